@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Recordings: frames over time, in files of many kinds.  docs/formats.md.
+ *
+ * Reads   NPY, PNG (8/16 bit grey; colour is refused), TIFF (single, multi-page, 8/16 bit, float),
+ *         HDF5 (any numeric 2-D or 3-D data set: "file.h5:/path/in/file"), a folder or a pattern with
+ *         one %d ("flow_%02d.png") as numbered frames.
+ * Writes  NPY, TIFF float32, HDF5 (NeXus), PNG (16 bit with the scale in its text chunks; a pattern for
+ *         several frames).
+ */
+#ifndef PTIE_RECORDING_H
+#define PTIE_RECORDING_H
+
+#include <ptie/status.h>
+
+typedef struct ptie_recording_info {
+    int32_t width_px, height_px;
+    int64_t frames;
+    char format[16];     /* "PNG", "TIFF", "NPY", "HDF5", "PNG sequence", ... */
+    char sample[16];     /* stored sample type: "u8", "u16", "f32", ... */
+    char dataset[256];   /* path inside an HDF5 file, else "" */
+    char unit[16];       /* "rad", "counts", ... or "" */
+    double frame_rate_hz;/* 0 if the file does not say */
+    double pixel_m;      /* 0 if the file does not say */
+} ptie_recording_info;
+
+typedef struct ptie_recording ptie_recording;
+
+/* Opens for reading; the kind is found from the content, not from the name.  Errors: PTIE_EIO (with the
+   system's reason; a directory without frames), PTIE_EFORMAT, PTIE_EUNSUPPORTED, PTIE_ENOMEM. */
+PTIE_API PTIE_NODISCARD ptie_status ptie_recording_open(ptie_recording **out, const char *path);
+PTIE_API void ptie_recording_close(ptie_recording *recording); /* NULL is fine */
+PTIE_API const ptie_recording_info *ptie_recording_get_info(const ptie_recording *recording);
+
+/* frame (out): height x width values as stored, converted to float.  Not thread-safe per recording.
+   Errors: PTIE_EINVAL (frame number), PTIE_EIO, PTIE_EFORMAT, PTIE_ENUMERIC (NaN or infinity: names the
+   pixel). */
+PTIE_API PTIE_NODISCARD ptie_status ptie_recording_read(ptie_recording *recording, int64_t frame,
+                                                        float *data);
+
+typedef struct ptie_writer ptie_writer;
+
+/* Creates a file for `info->frames` frames (0: not known yet) of one map; the kind is chosen by the
+   ending of `path`: .npy .tif .tiff .h5 .hdf5 .png.  info->unit, frame_rate_hz, pixel_m are stored where
+   the format can.  `name` is what the map is ("phase", "denoised").  The file appears under `path` only
+   at ptie_writer_close.  Errors: PTIE_EINVAL, PTIE_EEXIST, PTIE_EIO, PTIE_EUNSUPPORTED (ending). */
+PTIE_API PTIE_NODISCARD ptie_status ptie_writer_create(ptie_writer **out, const char *path,
+                                                       const char *name,
+                                                       const ptie_recording_info *info,
+                                                       bool overwrite);
+/* Appends one frame of height x width floats. */
+PTIE_API PTIE_NODISCARD ptie_status ptie_writer_append(ptie_writer *writer, const float *frame);
+/* Completes the file and frees the writer, also on failure (then no file is left). */
+PTIE_API PTIE_NODISCARD ptie_status ptie_writer_close(ptie_writer *writer);
+/* Frees the writer and leaves no file.  NULL is fine. */
+PTIE_API void ptie_writer_discard(ptie_writer *writer);
+
+#endif

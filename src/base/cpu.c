@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/cpu.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+
+static const char *const names[] = {"scalar", "avx2", "avx512", NULL};
+
+const char *ptie_cpu_name(ptie_cpu_level level) {
+    return names[level];
+}
+
+ptie_cpu_level ptie_cpu_detect(void) {
+#if defined(__x86_64__) && defined(__GNUC__)
+    /* The compiler's run time also asks XGETBV whether the system saves the wide registers. */
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+        return PTIE_CPU_AVX512;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return PTIE_CPU_AVX2;
+#endif
+    return PTIE_CPU_SCALAR;
+}
+
+ptie_status ptie_cpu_choose(ptie_cpu_level *out, const char *name) {
+    ptie_cpu_level best = ptie_cpu_detect();
+    if (!name || strcmp(name, "auto") == 0) name = getenv("PTIE_CPU");
+    *out = best;
+    if (!name || !*name || strcmp(name, "auto") == 0) return PTIE_OK;
+    for (int level = 0; level < PTIE_CPU_LEVELS; level++) {
+        if (strcmp(name, names[level]) != 0) continue;
+        if (level > (int)best)
+            return PTIE_FAIL(PTIE_ENAME, "cpu: level '%s' is not available here (this machine has up to '%s')",
+                             name, names[best]);
+        *out = (ptie_cpu_level)level;
+        return PTIE_OK;
+    }
+    return PTIE_FAIL(PTIE_ENAME, "cpu: unknown level '%s' (expected auto, scalar, avx2 or avx512)", name);
+}

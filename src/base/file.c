@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/memory.h"
+
+static ptie_status system_failure(const char *path, const char *what) {
+    return PTIE_FAIL(PTIE_EIO, "%s: %s: %s", path, what, strerror(errno));
+}
+
+static void forget(ptie_output_file *file) {
+    ptie_free(file->path);
+    ptie_free(file->part);
+    *file = (ptie_output_file){0};
+}
+
+static ptie_status may_write(const char *path, bool overwrite) {
+    struct stat info;
+    if (stat(path, &info) != 0) return PTIE_OK; /* absent; a bad folder shows when `part` is created */
+    if (S_ISDIR(info.st_mode))
+        return PTIE_FAIL(PTIE_EIO, "%s: cannot write (expected a file name, found a directory)", path);
+    if (!overwrite)
+        return PTIE_FAIL(PTIE_EEXIST, "%s: exists already (use -f to overwrite)", path);
+    return PTIE_OK;
+}
+
+ptie_status ptie_output_open(ptie_output_file *file, const char *path, bool overwrite) {
+    *file = (ptie_output_file){0};
+    PTIE_TRY(may_write(path, overwrite));
+    size_t bytes = strlen(path) + sizeof ".part";
+    file->path = ptie_strdup(path);
+    file->part = ptie_alloc(bytes, 1);
+    if (!file->path || !file->part) {
+        forget(file);
+        return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
+    }
+    snprintf(file->part, bytes, "%s.part", path);
+    FILE *stream = fopen(file->part, "wb");
+    if (!stream) {
+        ptie_status status = system_failure(path, "cannot create");
+        forget(file);
+        return status;
+    }
+    fclose(stream);
+    return PTIE_OK;
+}
+
+static ptie_status sync_to_disk(const char *path) {
+    int descriptor = open(path, O_RDONLY);
+    if (descriptor < 0) return system_failure(path, "cannot open to sync");
+    int failed = fsync(descriptor);
+    ptie_status status = failed ? system_failure(path, "cannot sync") : PTIE_OK;
+    close(descriptor);
+    return status;
+}
+
+ptie_status ptie_output_commit(ptie_output_file *file) {
+    ptie_status status = sync_to_disk(file->part);
+    if (status == PTIE_OK && rename(file->part, file->path) != 0)
+        status = system_failure(file->path, "cannot rename");
+    if (status != PTIE_OK) unlink(file->part);
+    forget(file);
+    return status;
+}
+
+void ptie_output_discard(ptie_output_file *file) {
+    if (file->part) unlink(file->part);
+    forget(file);
+}
+
+ptie_status ptie_output_stream(const ptie_output_file *file, FILE **out) {
+    *out = fopen(file->part, "w+b");
+    return *out ? PTIE_OK : system_failure(file->path, "cannot create");
+}
+
+ptie_status ptie_close_written(FILE *stream, const char *path) {
+    errno = 0;
+    int failed = ferror(stream);
+    failed |= fclose(stream);
+    return failed ? system_failure(path, "cannot write") : PTIE_OK;
+}
+
+ptie_status ptie_write_file(const char *path, const void *data, size_t bytes, bool overwrite) {
+    ptie_output_file file;
+    FILE *stream;
+    PTIE_TRY(ptie_output_open(&file, path, overwrite));
+    ptie_status status = ptie_output_stream(&file, &stream);
+    if (status == PTIE_OK) {
+        fwrite(data, 1, bytes, stream);
+        status = ptie_close_written(stream, path);
+    }
+    if (status == PTIE_OK) return ptie_output_commit(&file);
+    ptie_output_discard(&file);
+    return status;
+}
+
+/* Reads until the end, so that pipes work too; the limit bounds the memory. */
+static ptie_status read_stream(char **data, size_t *bytes, FILE *stream, const char *path,
+                               size_t limit) {
+    size_t capacity = 1 << 16, used = 0;
+    char *buffer;
+    PTIE_TRY(ptie_alloc_status(&buffer, capacity, 1, path));
+    for (;;) {
+        used += fread(buffer + used, 1, capacity - 1 - used, stream);
+        if (used < capacity - 1) break;
+        char *larger = used < limit ? ptie_alloc(capacity, 2) : NULL;
+        if (!larger) {
+            ptie_free(buffer);
+            return used < limit ? PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path)
+                                : PTIE_FAIL(PTIE_EFORMAT, "%s: file too large (expected at most %zu bytes)",
+                                            path, limit);
+        }
+        memcpy(larger, buffer, used);
+        ptie_free(buffer);
+        buffer = larger;
+        capacity *= 2;
+    }
+    if (ferror(stream)) {
+        ptie_free(buffer);
+        return system_failure(path, "cannot read");
+    }
+    if (used > limit) {
+        ptie_free(buffer);
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: file too large (expected at most %zu bytes)", path, limit);
+    }
+    buffer[used] = 0;
+    *data = buffer;
+    *bytes = used;
+    return PTIE_OK;
+}
+
+ptie_status ptie_read_file(char **data, size_t *bytes, const char *path, size_t limit) {
+    *data = NULL;
+    *bytes = 0;
+    FILE *stream = fopen(path, "rb");
+    if (!stream) return system_failure(path, "cannot open");
+    ptie_status status = read_stream(data, bytes, stream, path, limit);
+    fclose(stream);
+    return status;
+}

@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/ini.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <ini.h>
+
+#define MAX_KEYS 96
+
+typedef struct reading {
+    void *target;
+    const ptie_ini_key *keys;
+    size_t count;
+    bool seen[MAX_KEYS];
+    ptie_status status; /* of the first bad line */
+    char message[PTIE_MESSAGE_BYTES / 2];
+} reading;
+
+static const char *const booleans[] = {"no", "yes", "false", "true", "off", "on", NULL};
+
+static int word_index(const char *word, const char *const *words) {
+    for (int i = 0; words[i]; i++)
+        if (strcmp(word, words[i]) == 0) return i;
+    return -1;
+}
+
+/* "a .. b": both ends in one unit or each in its own; "a": both ends the same. */
+static const char *parse_range(const char *text, ptie_quantity quantity, ptie_range *range) {
+    char low[64], high[64];
+    const char *dots = strstr(text, "..");
+    if (!dots) {
+        const char *wrong = ptie_parse_quantity(text, quantity, &range->low);
+        range->high = range->low;
+        return wrong;
+    }
+    snprintf(high, sizeof high, "%s", dots + 2);
+    snprintf(low, sizeof low, "%.*s", (int)(dots - text), text);
+    const char *wrong = ptie_parse_quantity(high, quantity, &range->high);
+    if (wrong) return wrong;
+    if (!ptie_parse_quantity(low, quantity, &range->low)) return NULL;
+    /* "2 .. 5 mm": the unit of the second number serves both. */
+    const char *unit = high + strspn(high, " \t+-.0123456789");
+    if ((*unit == 'e' || *unit == 'E') && strspn(unit + 1, "+-0123456789")) {
+        unit += 1 + strspn(unit + 1, "+-0123456789");
+        unit += strspn(unit, " \t");
+    }
+    char both[132];
+    snprintf(both, sizeof both, "%s %s", low, unit);
+    return ptie_parse_quantity(both, quantity, &range->low);
+}
+
+static ptie_status complain(reading *r, const ptie_ini_key *key, const char *expected,
+                            const char *found) {
+    snprintf(r->message, sizeof r->message, "%s: expected %s, found '%.80s'", key->name, expected, found);
+    return PTIE_EFORMAT;
+}
+
+static ptie_status out_of_range(reading *r, const ptie_ini_key *key, const char *found) {
+    snprintf(r->message, sizeof r->message, "%s: out of range (expected %g to %g in SI units, found '%.60s')",
+             key->name, key->low, key->high, found);
+    return PTIE_EFORMAT;
+}
+
+static ptie_status set_range(reading *r, const ptie_ini_key *key, ptie_range *field, const char *text) {
+    ptie_range range;
+    const char *wrong = parse_range(text, key->quantity, &range);
+    if (wrong) return complain(r, key, wrong, text);
+    if (range.low > range.high) return complain(r, key, "a range from low to high", text);
+    if (range.low < key->low || range.high > key->high) return out_of_range(r, key, text);
+    *field = range;
+    return PTIE_OK;
+}
+
+static ptie_status set_choice(reading *r, const ptie_ini_key *key, int *field, const char *text) {
+    int which = word_index(text, key->choices);
+    if (which >= 0) {
+        *field = which;
+        return PTIE_OK;
+    }
+    snprintf(r->message, sizeof r->message, "%s: unknown value '%.60s' (did you mean '%s'?)", key->name,
+             text, ptie_nearest_word(text, key->choices));
+    return PTIE_ENAME;
+}
+
+static ptie_status set_field(reading *r, const ptie_ini_key *key, const char *text) {
+    char *field = (char *)r->target + key->offset;
+    switch (key->kind) {
+    case PTIE_INI_QUANTITY: {
+        double value;
+        const char *wrong = ptie_parse_quantity(text, key->quantity, &value);
+        if (wrong) return complain(r, key, wrong, text);
+        if (value < key->low || value > key->high) return out_of_range(r, key, text);
+        memcpy(field, &value, sizeof value);
+        return PTIE_OK;
+    }
+    case PTIE_INI_RANGE: return set_range(r, key, (ptie_range *)(void *)field, text);
+    case PTIE_INI_INTEGER: {
+        int64_t value;
+        if (!ptie_parse_integer(text, INT32_MIN, INT32_MAX, &value))
+            return complain(r, key, "a whole number", text);
+        if ((double)value < key->low || (double)value > key->high) return out_of_range(r, key, text);
+        int32_t number = (int32_t)value;
+        memcpy(field, &number, sizeof number);
+        return PTIE_OK;
+    }
+    case PTIE_INI_BOOLEAN: {
+        int which = word_index(text, booleans);
+        if (which < 0) return complain(r, key, "yes or no", text);
+        bool value = which % 2 == 1;
+        memcpy(field, &value, sizeof value);
+        return PTIE_OK;
+    }
+    case PTIE_INI_CHOICE: return set_choice(r, key, (int *)(void *)field, text);
+    case PTIE_INI_TEXT:
+        if (strlen(text) >= key->text_bytes) return complain(r, key, "a shorter text", text);
+        memcpy(field, text, strlen(text) + 1);
+        return PTIE_OK;
+    }
+    return PTIE_EFORMAT;
+}
+
+static ptie_status unknown_name(reading *r, const char *section, const char *name) {
+    const char *words[MAX_KEYS + 1];
+    size_t n = 0;
+    for (size_t i = 0; i < r->count; i++)
+        if (strcmp(r->keys[i].section, section) == 0) words[n++] = r->keys[i].name;
+    words[n] = NULL;
+    if (n > 0) {
+        snprintf(r->message, sizeof r->message, "unknown key '%.60s' in [%s] (did you mean '%s'?)", name,
+                 section, ptie_nearest_word(name, words));
+        return PTIE_ENAME;
+    }
+    for (size_t i = 0; i < r->count; i++) words[i] = r->keys[i].section;
+    words[r->count] = NULL;
+    snprintf(r->message, sizeof r->message, "unknown section [%.60s] (did you mean [%s]?)", section,
+             ptie_nearest_word(section, words));
+    return PTIE_ENAME;
+}
+
+static ptie_status set_key(reading *r, const char *section, const char *name, const char *value) {
+    for (size_t i = 0; i < r->count; i++) {
+        const ptie_ini_key *key = &r->keys[i];
+        if (strcmp(key->section, section) != 0 || strcmp(key->name, name) != 0) continue;
+        r->seen[i] = true;
+        return set_field(r, key, value);
+    }
+    return unknown_name(r, section, name);
+}
+
+/* inih's callback: 0 marks the line as bad.  inih goes on, so only the first failure is kept. */
+static int handle(void *user, const char *section, const char *name, const char *value) {
+    reading *r = user;
+    if (r->status != PTIE_OK) return 0;
+    r->status = set_key(r, section, name, value);
+    return r->status == PTIE_OK;
+}
+
+ptie_status ptie_ini_read(void *target, const ptie_ini_key *keys, size_t count, const char *text,
+                          const char *where) {
+    assert(count <= MAX_KEYS);
+    reading r = {.target = target, .keys = keys, .count = count};
+    int line = ini_parse_string(text, handle, &r);
+    if (r.status != PTIE_OK) return PTIE_FAIL(r.status, "%s:%d: %s", where, line, r.message);
+    if (line < 0) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", where);
+    if (line > 0)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s:%d: expected '[section]', 'key = value' or a comment", where,
+                         line);
+    for (size_t i = 0; i < count; i++)
+        if (keys[i].required && !r.seen[i])
+            return PTIE_FAIL(PTIE_EINVAL, "%s: missing key '%s' in [%s] (expected %s)", where,
+                             keys[i].name, keys[i].section,
+                             keys[i].quantity == PTIE_LENGTH ? "a length such as 532 nm or 10 mm"
+                                                             : "a value");
+    return PTIE_OK;
+}
+
+static const char *si_unit(ptie_quantity quantity) {
+    switch (quantity) {
+    case PTIE_LENGTH: return " m";
+    case PTIE_TIME: return " s";
+    case PTIE_RATE: return " Hz";
+    case PTIE_ANGLE: return " rad";
+    case PTIE_SPEED: return " m/s";
+    case PTIE_NUMBER: break;
+    }
+    return "";
+}
+
+static void print_field(ptie_text *out, const ptie_ini_key *key, const void *field) {
+    const char *unit = si_unit(key->quantity);
+    switch (key->kind) {
+    case PTIE_INI_QUANTITY: ptie_text_append(out, "%.17g%s", *(const double *)field, unit); break;
+    case PTIE_INI_RANGE: {
+        const ptie_range *range = field;
+        ptie_text_append(out, "%.17g%s .. %.17g%s", range->low, unit, range->high, unit);
+        break;
+    }
+    case PTIE_INI_INTEGER: ptie_text_append(out, "%d", *(const int32_t *)field); break;
+    case PTIE_INI_BOOLEAN: ptie_text_append(out, "%s", *(const bool *)field ? "yes" : "no"); break;
+    case PTIE_INI_CHOICE: ptie_text_append(out, "%s", key->choices[*(const int *)field]); break;
+    case PTIE_INI_TEXT: ptie_text_append(out, "%s", (const char *)field); break;
+    }
+}
+
+void ptie_ini_print(ptie_text *out, const void *target, const ptie_ini_key *keys, size_t count) {
+    const char *section = "";
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(section, keys[i].section) != 0)
+            ptie_text_append(out, "%s[%s]\n", i ? "\n" : "", keys[i].section);
+        section = keys[i].section;
+        ptie_text_append(out, "%s = ", keys[i].name);
+        print_field(out, &keys[i], (const char *)target + keys[i].offset);
+        ptie_text_append(out, "\n");
+    }
+}

@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/text.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+#define MAX_WORD 63
+
+/* Levenshtein distance, case-insensitive, over the first MAX_WORD characters. */
+static size_t edit_distance(const char *a, const char *b) {
+    size_t n = strnlen(b, MAX_WORD), row[MAX_WORD + 1];
+    for (size_t j = 0; j <= n; j++) row[j] = j;
+    for (size_t i = 0; a[i] && i < MAX_WORD; i++) {
+        size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (size_t j = 0; j < n; j++) {
+            bool same = tolower((unsigned char)a[i]) == tolower((unsigned char)b[j]);
+            size_t best = diagonal + (same ? 0 : 1);
+            if (row[j] + 1 < best) best = row[j] + 1;
+            if (row[j + 1] + 1 < best) best = row[j + 1] + 1;
+            diagonal = row[j + 1];
+            row[j + 1] = best;
+        }
+    }
+    return row[n];
+}
+
+const char *ptie_nearest_word(const char *word, const char *const *words) {
+    const char *best = NULL;
+    size_t best_distance = SIZE_MAX;
+    for (; *words; words++) {
+        size_t distance = edit_distance(word, *words);
+        if (distance < best_distance) best = *words, best_distance = distance;
+    }
+    return best;
+}
+
+typedef struct unit {
+    ptie_quantity quantity;
+    const char *name;
+    double factor;
+} unit;
+
+static const unit units[] = {
+    {PTIE_NUMBER, "", 1},       {PTIE_NUMBER, "%", 1e-2},    {PTIE_LENGTH, "nm", 1e-9},
+    {PTIE_LENGTH, "um", 1e-6},  {PTIE_LENGTH, "µm", 1e-6},   {PTIE_LENGTH, "mm", 1e-3},
+    {PTIE_LENGTH, "cm", 1e-2},  {PTIE_LENGTH, "m", 1},       {PTIE_TIME, "ns", 1e-9},
+    {PTIE_TIME, "us", 1e-6},    {PTIE_TIME, "µs", 1e-6},     {PTIE_TIME, "ms", 1e-3},
+    {PTIE_TIME, "s", 1},        {PTIE_RATE, "Hz", 1},        {PTIE_RATE, "kHz", 1e3},
+    {PTIE_RATE, "MHz", 1e6},    {PTIE_RATE, "fps", 1},       {PTIE_ANGLE, "rad", 1},
+    {PTIE_ANGLE, "mrad", 1e-3}, {PTIE_ANGLE, "deg", M_PI / 180}, {PTIE_SPEED, "m/s", 1},
+};
+
+static const char *const expected[] = {
+    [PTIE_NUMBER] = "a number",
+    [PTIE_LENGTH] = "a length such as 532 nm or 10 mm",
+    [PTIE_TIME] = "a time such as 40 us or 2 ms",
+    [PTIE_RATE] = "a rate such as 25 kHz or 25000 fps",
+    [PTIE_ANGLE] = "an angle such as 1.5 rad or 30 deg",
+    [PTIE_SPEED] = "a speed such as 300 m/s",
+};
+
+const char *ptie_parse_quantity(const char *text, ptie_quantity quantity, double *value) {
+    char *end;
+    double number = strtod(text, &end);
+    if (end == text || !isfinite(number)) return expected[quantity];
+    while (*end == ' ' || *end == '\t') end++;
+    size_t length = strlen(end);
+    while (length > 0 && isspace((unsigned char)end[length - 1])) length--;
+    if (number == 0 && length == 0) {
+        *value = 0;
+        return NULL;
+    }
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        const unit *u = &units[i];
+        if (u->quantity != quantity || strlen(u->name) != length) continue;
+        if (memcmp(u->name, end, length) != 0) continue;
+        *value = number * u->factor;
+        return NULL;
+    }
+    return expected[quantity];
+}
+
+bool ptie_parse_integer(const char *text, int64_t low, int64_t high, int64_t *value) {
+    char *end;
+    errno = 0;
+    long long number = strtoll(text, &end, 10);
+    if (end == text || errno == ERANGE) return false;
+    while (isspace((unsigned char)*end)) end++;
+    if (*end || number < low || number > high) return false;
+    *value = number;
+    return true;
+}
+
+static bool reserve(ptie_text *text, size_t more) {
+    if (more <= text->capacity - text->length) return true;
+    size_t capacity = 2 * (text->capacity + more);
+    char *data = ptie_alloc(capacity, 1);
+    if (!data) return false;
+    if (text->data) memcpy(data, text->data, text->length + 1);
+    ptie_free(text->data);
+    text->data = data;
+    text->capacity = capacity;
+    return true;
+}
+
+void ptie_text_append(ptie_text *text, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(NULL, 0, format, arguments);
+    va_end(arguments);
+    if (text->failed || length < 0 || !reserve(text, (size_t)length + 1)) {
+        text->failed = true;
+        return;
+    }
+    va_start(arguments, format);
+    vsnprintf(text->data + text->length, (size_t)length + 1, format, arguments);
+    va_end(arguments);
+    text->length += (size_t)length;
+}
+
+void ptie_text_free(ptie_text *text) {
+    ptie_free(text->data);
+    *text = (ptie_text){0};
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Two-dimensional transforms over FFTW: real periodic (r2c), real mirrored (DCT-II), complex.
+ * Plans are const and thread-safe once made; buffers must be 64-byte aligned.  FFTW_ESTIMATE, so that the
+ * same plan (and the same bits) comes out every time.
+ */
+#ifndef PTIE_FFT_FFT_H
+#define PTIE_FFT_FFT_H
+
+#include "base/status.h"
+
+typedef enum ptie_fft_kind {
+    PTIE_FFT_REAL,   /* spectrum: height x (width/2 + 1) complex */
+    PTIE_FFT_MIRROR, /* spectrum: height x width real; DCT-II forward, DCT-III back */
+    PTIE_FFT_COMPLEX /* spectrum: height x width complex; the image is complex too */
+} ptie_fft_kind;
+
+typedef struct ptie_fft ptie_fft;
+
+ptie_status ptie_fft_create(ptie_fft **out, ptie_fft_kind kind, int32_t width, int32_t height);
+void ptie_fft_free(ptie_fft *fft);
+
+size_t ptie_fft_image_floats(const ptie_fft *fft);
+size_t ptie_fft_spectrum_floats(const ptie_fft *fft);
+int32_t ptie_fft_columns(const ptie_fft *fft); /* spectrum columns: width/2 + 1 or width */
+
+/* inverse(forward(x)) = x: the inverse divides by the number of points.  Inputs are destroyed. */
+void ptie_fft_forward(const ptie_fft *fft, float *spectrum, float *image);
+void ptie_fft_inverse(const ptie_fft *fft, float *image, float *spectrum);
+
+/* Angular frequency in rad/m of spectrum column (axis 0) or row (axis 1) `index` at `pixel_m`:
+   2 pi f for PERIODIC kinds (negative above Nyquist), pi i / (n p) for the mirrored one. */
+double ptie_fft_wavenumber(const ptie_fft *fft, int axis, int32_t index, double pixel_m);
+
+#endif

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The inverse model inside the library; contracts as in <ptie/solver.h>, arguments already checked. */
+#ifndef PTIE_TIE_SOLVER_H
+#define PTIE_TIE_SOLVER_H
+
+#include <ptie/solver.h>
+
+#include "base/status.h"
+
+ptie_status ptie_tie_plan(ptie_solver **out, const ptie_solver_params *params);
+size_t ptie_tie_scratch(const ptie_solver *solver);
+ptie_status ptie_tie_solve(const ptie_solver *solver, float *phase_rad, const float *i_plus,
+                           const float *i_zero, const float *i_minus, void *scratch);
+
+#endif
