@@ -39,15 +39,11 @@ static const char *parse_range(const char *text, ptie_quantity quantity, ptie_ra
     snprintf(low, sizeof low, "%.*s", (int)(dots - text), text);
     const char *wrong = ptie_parse_quantity(high, quantity, &range->high);
     if (wrong) return wrong;
-    if (!ptie_parse_quantity(low, quantity, &range->low)) return NULL;
     /* "2 .. 5 mm": the unit of the second number serves both. */
-    const char *unit = high + strspn(high, " \t+-.0123456789");
-    if ((*unit == 'e' || *unit == 'E') && strspn(unit + 1, "+-0123456789")) {
-        unit += 1 + strspn(unit + 1, "+-0123456789");
-        unit += strspn(unit, " \t");
-    }
+    static const char digits[] = " \t+-.0123456789eE";
+    if (low[strspn(low, digits)]) return ptie_parse_quantity(low, quantity, &range->low);
     char both[132];
-    snprintf(both, sizeof both, "%s %s", low, unit);
+    snprintf(both, sizeof both, "%s %s", low, high + strspn(high, digits));
     return ptie_parse_quantity(both, quantity, &range->low);
 }
 
