@@ -1,0 +1,36 @@
+# Thin wrapper: installs what is missing, builds with Meson, runs.  The build itself is meson.build.
+#
+#   make          build/ptie
+#   make demo     a synthetic recording of a jet, reconstructed and denoised: out/demo/
+#   make test     every test; the last line counts them
+#   make sanitize the tests again under ASan + UBSan, then TSan (longer)
+
+BUILD ?= build
+MESON_FLAGS ?=
+
+.PHONY: all demo test sanitize clean
+all: $(BUILD)/build.ninja
+	@ninja -C $(BUILD)
+
+$(BUILD)/build.ninja: | dependencies
+	@meson setup $(BUILD) $(MESON_FLAGS)
+
+.PHONY: dependencies
+dependencies:
+	@tools/install-dependencies build
+
+.PHONY: test-dependencies
+test-dependencies:
+	@tools/install-dependencies build test
+
+demo: all
+	@tools/demo $(BUILD)/ptie out/demo
+
+test: test-dependencies all
+	@meson test -C $(BUILD) --print-errorlogs; tools/count-tests $(BUILD)/meson-logs/testlog.json
+
+sanitize: test-dependencies
+	@tools/sanitize
+
+clean:
+	@rm -rf $(BUILD) build-asan build-tsan out
