@@ -63,15 +63,14 @@ typedef struct ptie_stat { double mean, std; } ptie_stat;
 
 typedef struct ptie_run_row {    /* one kind of map: the TIE phase, or the denoised phase */
     ptie_stat mgm, sbr, bns, cnr;
-    ptie_stat rmse_rad, correlation; /* against truth; NaN without */
+    ptie_stat rmse_rad, correlation; /* against truth, both maps with mean 0; NaN without */
 } ptie_run_row;
 
 typedef struct ptie_run_summary {
     int64_t frames;
     int32_t width_px, height_px; /* of the phase, after binning */
     double pixel_m;
-    ptie_run_row phase, denoised;
-    ptie_stat noise_rad;         /* expected standard deviation of the phase from sensor noise, if known */
+    ptie_run_row phase, denoised;   /* denoised: all NaN without a model */
     double seconds;
 } ptie_run_summary;
 
