@@ -31,4 +31,14 @@ void ptie_fft_inverse(const ptie_fft *fft, float *image, float *spectrum);
    2 pi f for PERIODIC kinds (negative above Nyquist), pi i / (n p) for the mirrored one. */
 double ptie_fft_wavenumber(const ptie_fft *fft, int axis, int32_t index, double pixel_m);
 
+/* An isotropic filter: one real factor per spectrum entry (height x columns). */
+size_t ptie_fft_filter_floats(const ptie_fft *fft);
+/* filter (out): response(k^2), k^2 in (rad/m)^2. */
+void ptie_fft_filter_fill(const ptie_fft *fft, float *filter, double pixel_m,
+                          double (*response)(double k2, const void *context), const void *context);
+/* Multiplies the spectrum, in place. */
+void ptie_fft_filter_apply(const ptie_fft *fft, float *spectrum, const float *filter);
+/* Mean of filter^2 over all modes of the image: what it does to the variance of white noise. */
+double ptie_fft_filter_power(const ptie_fft *fft, const float *filter);
+
 #endif

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "api/params.h"
+
+#include <math.h>
+#include <string.h>
+
+/* No parameter struct comes near this; a larger struct_size is memory that nobody initialised. */
+#define LONGEST_STRUCT 65536u
+
+ptie_status ptie_params_read(void *params, size_t size, const void *given, const char *where) {
+    PTIE_TRY(ptie_check_pointer(given, where, "params"));
+    const unsigned char *bytes = given;
+    const uint32_t own_size = (uint32_t)size;
+    uint32_t given_size;
+    memcpy(&given_size, bytes, sizeof given_size);
+    if (given_size < sizeof given_size || given_size > LONGEST_STRUCT)
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "%s: params are not initialised (expected struct_size %u as *_params_init "
+                         "sets it, found %u)",
+                         where, own_size, given_size);
+    for (uint32_t i = own_size; i < given_size; i++)
+        if (bytes[i] != 0)
+            return PTIE_FAIL(PTIE_EINVAL,
+                             "%s: params of a newer version set a field that this version does not "
+                             "have (expected struct_size %u, found %u)",
+                             where, own_size, given_size);
+    memcpy(params, given, given_size < own_size ? given_size : own_size);
+    memcpy(params, &own_size, sizeof own_size);
+    return PTIE_OK;
+}
+
+ptie_status ptie_check_pointer(const void *pointer, const char *where, const char *name) {
+    if (pointer) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EINVAL, "%s: %s is missing (expected a pointer, found NULL)", where, name);
+}
+
+ptie_status ptie_check_integer(int64_t value, int64_t low, int64_t high, const char *where,
+                               const char *name) {
+    if (value >= low && value <= high) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EINVAL, "%s: %s is out of range (expected %lld..%lld, found %lld)", where,
+                     name, (long long)low, (long long)high, (long long)value);
+}
+
+ptie_status ptie_check_positive(double value, const char *where, const char *name) {
+    if (isfinite(value) && value > 0) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EINVAL, "%s: %s is out of range (expected a number > 0, found %g)", where,
+                     name, value);
+}
+
+ptie_status ptie_check_finite(double value, const char *where, const char *name) {
+    if (isfinite(value)) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EINVAL, "%s: %s is out of range (expected a finite number, found %g)", where,
+                     name, value);
+}
