@@ -23,12 +23,12 @@ typedef enum ptie_propagation {
 
 typedef struct ptie_optics_params {
     uint32_t struct_size;       /* set by ptie_optics_params_init */
-    int32_t width_px, height_px;/* 2..32768 each */
-    double pixel_m;             /* pixel pitch at the object, > 0 */
-    double wavelength_m;        /* > 0, default 532e-9 */
-    double defocus_m;           /* distance from focus to each plane, != 0, default 10e-3 */
-    ptie_boundary boundary;
-    ptie_propagation propagation;
+    int32_t width_px, height_px;/* 2..32768 each, default 256 */
+    double pixel_m;             /* pixel pitch at the object, 1e-9..1, default 20e-6 */
+    double wavelength_m;        /* 1e-12..1e-2, default 532e-9 */
+    double defocus_m;           /* distance from focus to each plane, 1e-9..1e3, default 10e-3 */
+    ptie_boundary boundary;       /* default PTIE_PERIODIC */
+    ptie_propagation propagation; /* default PTIE_TIE_SPECTRAL */
 } ptie_optics_params;
 
 typedef struct ptie_optics ptie_optics;
@@ -45,8 +45,10 @@ PTIE_API size_t ptie_optics_scratch_bytes(const ptie_optics *optics);
    intensity, NULL for 1 everywhere.  scratch: ptie_optics_scratch_bytes, 64-byte aligned.
    PTIE_TIE_SPECTRAL and _STENCIL need i_zero == NULL or constant: they are Eq. 1, which drops the
    gradient of I0; use PTIE_ANGULAR_SPECTRUM for structured light.
-   No allocation.  The plan is const: concurrent runs with different scratch are fine.
-   Errors: PTIE_ENUMERIC (phase or intensity not finite). */
+   An output may be one of the inputs.  No allocation.  The plan is const: concurrent runs with
+   different scratch are fine.
+   Errors: PTIE_ENUMERIC (phase or intensity not finite, intensity negative: names the pixel),
+   PTIE_EINVAL (a pointer is missing, scratch not aligned, i_zero not constant where it must be). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_optics_run(const ptie_optics *optics, float *i_plus,
                                                     float *i_minus, const float *phase_rad,
                                                     const float *i_zero, void *scratch);

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 /* No parameter struct comes near this; a larger struct_size is memory that nobody initialised. */
 #define LONGEST_STRUCT 65536u
 
@@ -47,8 +49,18 @@ ptie_status ptie_check_positive(double value, const char *where, const char *nam
                      name, value);
 }
 
-ptie_status ptie_check_finite(double value, const char *where, const char *name) {
-    if (isfinite(value)) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EINVAL, "%s: %s is out of range (expected a finite number, found %g)", where,
-                     name, value);
+ptie_status ptie_check_number(double value, double low, double high, const char *where,
+                              const char *name) {
+    if (value >= low && value <= high) return PTIE_OK; /* false for NaN */
+    return PTIE_FAIL(PTIE_EINVAL, "%s: %s is out of range (expected %g..%g, found %g)", where, name, low,
+                     high, value);
+}
+
+ptie_status ptie_check_scratch(const void *scratch, const char *where) {
+    PTIE_TRY(ptie_check_pointer(scratch, where, "scratch"));
+    if ((uintptr_t)scratch % PTIE_ALIGNMENT == 0) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EINVAL,
+                     "%s: scratch is not aligned (expected a multiple of %d as ptie_scratch_alloc gives, "
+                     "found %p)",
+                     where, PTIE_ALIGNMENT, scratch);
 }

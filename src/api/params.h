@@ -17,8 +17,11 @@ ptie_status ptie_params_read(void *params, size_t size, const void *given, const
 ptie_status ptie_check_pointer(const void *pointer, const char *where, const char *name);
 ptie_status ptie_check_integer(int64_t value, int64_t low, int64_t high, const char *where,
                                const char *name);
+ptie_status ptie_check_number(double value, double low, double high, const char *where,
+                              const char *name);
 /* Finite and > 0. */
 ptie_status ptie_check_positive(double value, const char *where, const char *name);
-ptie_status ptie_check_finite(double value, const char *where, const char *name);
+/* Not NULL and aligned as plans need it. */
+ptie_status ptie_check_scratch(const void *scratch, const char *where);
 
 #endif

@@ -11,5 +11,6 @@ ptie_status ptie_tie_plan(ptie_solver **out, const ptie_solver_params *params);
 size_t ptie_tie_scratch(const ptie_solver *solver);
 ptie_status ptie_tie_solve(const ptie_solver *solver, float *phase_rad, const float *i_plus,
                            const float *i_zero, const float *i_minus, void *scratch);
+double ptie_tie_noise_rad(const ptie_solver *solver, ptie_planes planes, double sigma);
 
 #endif
