@@ -1,0 +1,451 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* HDF5 behind one lock, with its error printing off and its error stack turned into one line. */
+#include "io/h5.h"
+
+#include <assert.h>
+#include <fcntl.h>
+#include <hdf5.h>
+#include <pthread.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "io/input.h"
+
+struct ptie_h5 {
+    hid_t file;
+    char *path;              /* what messages call it */
+    ptie_output_file output; /* open while the file is being written */
+    bool broken;             /* a write failed: the file can only be discarded */
+};
+
+static pthread_mutex_t hdf5_mutex = PTHREAD_MUTEX_INITIALIZER;
+
+/* The caller's error printing, put back when the lock is released. */
+typedef struct printing {
+    H5E_auto2_t function;
+    void *data;
+} printing;
+
+static printing enter(void) {
+    printing saved = {0};
+    pthread_mutex_lock(&hdf5_mutex);
+    H5Eget_auto2(H5E_DEFAULT, &saved.function, &saved.data);
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    return saved;
+}
+
+static void leave(printing *saved) {
+    H5Eset_auto2(H5E_DEFAULT, saved->function, saved->data);
+    pthread_mutex_unlock(&hdf5_mutex);
+}
+
+static void close_id(hid_t *id) {
+    if (*id >= 0) H5Idec_ref(*id);
+}
+
+/* Both undo themselves at the end of the block: the lock last, because it is declared first. */
+#define LOCK_HDF5 printing lock_ __attribute__((cleanup(leave), unused)) = enter()
+#define SCOPED_ID __attribute__((cleanup(close_id))) hid_t
+
+/* Takes the reason from the deepest entry: the system's words where there are some. */
+static herr_t take_reason(unsigned depth, const H5E_error2_t *entry, void *data) {
+    (void)depth;
+    char *reason = data;
+    static const char words[] = "error message = '";
+    const char *found = strstr(entry->desc, words);
+    const char *start = found ? found + sizeof words - 1 : entry->desc;
+    size_t length = found ? strcspn(start, "'") : strlen(start);
+    snprintf(reason, 160, "%.*s", (int)length, start);
+    return 1; /* enough */
+}
+
+/* Must come right after the call that failed: the next one clears the stack. */
+static ptie_status h5_failure(const ptie_h5 *h5, ptie_status status, const char *what, const char *object) {
+    char reason[160] = "no reason given";
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_reason, reason);
+    return PTIE_FAIL(status, "%s: cannot %s %s: %s", h5->path, what, object, reason);
+}
+
+/* HDF5 cannot close what it cannot write out (disk full): it would try again, at exit too, and crash.  So
+   whatever it still holds goes to the null device. */
+static void divert(ptie_h5 *h5) {
+    int *descriptor = NULL;
+    h5->broken = true;
+    if (H5Fget_vfd_handle(h5->file, H5P_DEFAULT, (void **)&descriptor) < 0 || !descriptor) return;
+    int null = open("/dev/null", O_RDWR | O_CLOEXEC);
+    if (null < 0) return;
+    dup2(null, *descriptor);
+    close(null);
+}
+
+/* Takes the reason first and diverts before anything is closed. */
+static ptie_status write_failure(ptie_h5 *h5, const char *what, const char *object) {
+    ptie_status status = h5_failure(h5, PTIE_EIO, what, object);
+    divert(h5);
+    return status;
+}
+
+static hid_t memory_type(ptie_h5_type type) {
+    switch (type) {
+    case PTIE_H5_F32: return H5T_NATIVE_FLOAT;
+    case PTIE_H5_F64: return H5T_NATIVE_DOUBLE;
+    case PTIE_H5_U8: return H5T_NATIVE_UINT8;
+    case PTIE_H5_U32: return H5T_NATIVE_UINT32;
+    case PTIE_H5_U64: return H5T_NATIVE_UINT64;
+    }
+    return H5I_INVALID_HID;
+}
+
+static hid_t stored_type(ptie_h5_type type) {
+    switch (type) {
+    case PTIE_H5_F32: return H5T_IEEE_F32LE;
+    case PTIE_H5_F64: return H5T_IEEE_F64LE;
+    case PTIE_H5_U8: return H5T_STD_U8LE;
+    case PTIE_H5_U32: return H5T_STD_U32LE;
+    case PTIE_H5_U64: return H5T_STD_U64LE;
+    }
+    return H5I_INVALID_HID;
+}
+
+/* --- files --------------------------------------------------------------------------------------- */
+
+static void h5_free(ptie_h5 *h5) {
+    ptie_free(h5->path);
+    ptie_free(h5);
+}
+
+static ptie_status h5_new(ptie_h5 **out, const char *path) {
+    *out = NULL;
+    ptie_h5 *h5;
+    PTIE_TRY(ptie_alloc_status(&h5, 1, sizeof *h5, path));
+    h5->file = H5I_INVALID_HID;
+    h5->path = ptie_strdup(path);
+    if (!h5->path) {
+        h5_free(h5);
+        return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
+    }
+    *out = h5;
+    return PTIE_OK;
+}
+
+static ptie_status create_file(ptie_h5 *h5) {
+    LOCK_HDF5;
+    SCOPED_ID creation = H5Pcreate(H5P_FILE_CREATE), access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_obj_track_times(creation, false); /* the root group */
+    H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
+    h5->file = H5Fcreate(h5->output.part, H5F_ACC_TRUNC, creation, access);
+    return h5->file >= 0 ? PTIE_OK : h5_failure(h5, PTIE_EIO, "create", "the file");
+}
+
+ptie_status ptie_h5_create(ptie_h5 **out, const char *path, bool overwrite) {
+    ptie_h5 *h5;
+    *out = NULL;
+    PTIE_TRY(h5_new(&h5, path));
+    ptie_status status = ptie_output_open(&h5->output, path, overwrite);
+    if (status == PTIE_OK) status = create_file(h5);
+    if (status != PTIE_OK) {
+        ptie_output_discard(&h5->output);
+        h5_free(h5);
+        return status;
+    }
+    *out = h5;
+    return PTIE_OK;
+}
+
+static ptie_status open_file(ptie_h5 *h5) {
+    LOCK_HDF5;
+    SCOPED_ID access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
+    H5Pset_file_locking(access, false, true); /* network file systems refuse locks */
+    h5->file = H5Fopen(h5->path, H5F_ACC_RDONLY, access);
+    return h5->file >= 0 ? PTIE_OK : h5_failure(h5, PTIE_EFORMAT, "open as", "HDF5");
+}
+
+ptie_status ptie_h5_open(ptie_h5 **out, const char *path) {
+    ptie_h5 *h5;
+    unsigned char head[1];
+    *out = NULL;
+    PTIE_TRY(ptie_input_head(path, head, sizeof head, NULL)); /* the system's reason for a missing file */
+    PTIE_TRY(h5_new(&h5, path));
+    ptie_status status = open_file(h5);
+    if (status != PTIE_OK) {
+        h5_free(h5);
+        return status;
+    }
+    *out = h5;
+    return PTIE_OK;
+}
+
+/* Closes the HDF5 side; with `keep`, what was written must have reached the system. */
+static ptie_status close_file(ptie_h5 *h5, bool keep) {
+    LOCK_HDF5;
+    ptie_status status = PTIE_OK;
+    if (h5->output.part && !keep) divert(h5);
+    if (h5->output.part && keep && H5Fflush(h5->file, H5F_SCOPE_GLOBAL) < 0)
+        status = write_failure(h5, "write", "the file");
+    if (H5Fclose(h5->file) < 0 && keep && status == PTIE_OK) status = write_failure(h5, "close", "the file");
+    if (keep && status == PTIE_OK && h5->broken)
+        status = PTIE_FAIL(PTIE_EIO, "%s: cannot complete the file: a write failed before", h5->path);
+    return status;
+}
+
+ptie_status ptie_h5_close(ptie_h5 *h5) {
+    if (!h5) return PTIE_OK;
+    ptie_status status = close_file(h5, true);
+    if (status != PTIE_OK)
+        ptie_output_discard(&h5->output);
+    else if (h5->output.part)
+        status = ptie_output_commit(&h5->output);
+    h5_free(h5);
+    return status;
+}
+
+void ptie_h5_discard(ptie_h5 *h5) {
+    if (!h5) return;
+    ptie_status ignored = close_file(h5, false);
+    (void)ignored; /* nothing of it is kept */
+    ptie_output_discard(&h5->output);
+    h5_free(h5);
+}
+
+/* --- data sets ----------------------------------------------------------------------------------- */
+
+ptie_status ptie_h5_dataset(ptie_h5 *h5, const char *path, ptie_h5_type type, int32_t rank,
+                            const uint64_t *dims, uint64_t chunk_rows) {
+    assert(rank >= 1 && rank <= 4 && (dims[0] > 0 || chunk_rows > 0));
+    hsize_t size[4], largest[4], chunk[4];
+    for (int32_t d = 0; d < rank; d++) chunk[d] = size[d] = largest[d] = dims[d];
+    chunk[0] = chunk_rows;
+    if (dims[0] == 0) largest[0] = H5S_UNLIMITED;
+    LOCK_HDF5;
+    SCOPED_ID space = H5Screate_simple(rank, size, largest);
+    SCOPED_ID links = H5Pcreate(H5P_LINK_CREATE);
+    SCOPED_ID creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_create_intermediate_group(links, 1);
+    H5Pset_obj_track_times(creation, false);
+    if (chunk_rows > 0) H5Pset_chunk(creation, rank, chunk);
+    SCOPED_ID set = H5Dcreate2(h5->file, path, stored_type(type), space, links, creation, H5P_DEFAULT);
+    return set >= 0 ? PTIE_OK : write_failure(h5, "create", path);
+}
+
+static ptie_status open_set(const ptie_h5 *h5, const char *path, hid_t *set) {
+    *set = H5Dopen2(h5->file, path, H5P_DEFAULT);
+    return *set >= 0 ? PTIE_OK : h5_failure(h5, PTIE_EFORMAT, "open data set", path);
+}
+
+/* Shape of an open data set. */
+static ptie_status set_shape(const ptie_h5 *h5, const char *path, hid_t set, int32_t *rank,
+                             hsize_t dims[4]) {
+    SCOPED_ID space = H5Dget_space(set);
+    *rank = H5Sget_simple_extent_ndims(space);
+    if (*rank < 1 || *rank > 4)
+        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: %s has %d dimensions (expected 1 to 4)", h5->path, path,
+                         *rank);
+    H5Sget_simple_extent_dims(space, dims, NULL);
+    return PTIE_OK;
+}
+
+ptie_status ptie_h5_shape(ptie_h5 *h5, const char *path, int32_t *rank, uint64_t dims[4]) {
+    LOCK_HDF5;
+    hsize_t size[4] = {0};
+    SCOPED_ID set = H5I_INVALID_HID;
+    PTIE_TRY(open_set(h5, path, &set));
+    PTIE_TRY(set_shape(h5, path, set, rank, size));
+    for (int32_t d = 0; d < 4; d++) dims[d] = size[d];
+    return PTIE_OK;
+}
+
+bool ptie_h5_exists(ptie_h5 *h5, const char *path) {
+    LOCK_HDF5;
+    return H5Oexists_by_name(h5->file, path, H5P_DEFAULT) > 0;
+}
+
+typedef struct rows {
+    uint64_t first, count;
+} rows;
+
+/* Selects rows in the file and makes the matching memory space. */
+static ptie_status select_rows(const ptie_h5 *h5, const char *path, hid_t set, rows which,
+                               hid_t *file_space, hid_t *memory_space) {
+    int32_t rank;
+    hsize_t count[4], start[4] = {which.first};
+    PTIE_TRY(set_shape(h5, path, set, &rank, count));
+    if (which.first > count[0] || which.count > count[0] - which.first)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: %s has too few rows (expected %llu, found %llu)", h5->path, path,
+                         (unsigned long long)(which.first + which.count), (unsigned long long)count[0]);
+    count[0] = which.count;
+    *file_space = H5Dget_space(set);
+    *memory_space = H5Screate_simple(rank, count, NULL);
+    H5Sselect_hyperslab(*file_space, H5S_SELECT_SET, start, NULL, count, NULL);
+    return PTIE_OK;
+}
+
+/* Makes an unlimited data set long enough; does nothing to others. */
+static ptie_status grow(ptie_h5 *h5, const char *path, hid_t set, uint64_t needed) {
+    int32_t rank;
+    hsize_t dims[4], largest[4];
+    PTIE_TRY(set_shape(h5, path, set, &rank, dims));
+    SCOPED_ID space = H5Dget_space(set);
+    H5Sget_simple_extent_dims(space, NULL, largest);
+    if (needed <= dims[0] || largest[0] != H5S_UNLIMITED) return PTIE_OK;
+    dims[0] = needed;
+    return H5Dset_extent(set, dims) >= 0 ? PTIE_OK : write_failure(h5, "extend", path);
+}
+
+ptie_status ptie_h5_write(ptie_h5 *h5, const char *path, ptie_h5_type type, uint64_t first,
+                          uint64_t count, const void *data) {
+    LOCK_HDF5;
+    SCOPED_ID set = H5I_INVALID_HID, file_space = H5I_INVALID_HID, memory_space = H5I_INVALID_HID;
+    PTIE_TRY(open_set(h5, path, &set));
+    PTIE_TRY(grow(h5, path, set, first + count));
+    PTIE_TRY(select_rows(h5, path, set, (rows){first, count}, &file_space, &memory_space));
+    /* Flushed here, because a failure while closing the set could not be handled. */
+    if (H5Dwrite(set, memory_type(type), memory_space, file_space, H5P_DEFAULT, data) < 0 ||
+        H5Dflush(set) < 0)
+        return write_failure(h5, "write", path);
+    return PTIE_OK;
+}
+
+ptie_status ptie_h5_read(ptie_h5 *h5, const char *path, ptie_h5_type type, uint64_t first,
+                         uint64_t count, void *data) {
+    LOCK_HDF5;
+    SCOPED_ID set = H5I_INVALID_HID, file_space = H5I_INVALID_HID, memory_space = H5I_INVALID_HID;
+    PTIE_TRY(open_set(h5, path, &set));
+    PTIE_TRY(select_rows(h5, path, set, (rows){first, count}, &file_space, &memory_space));
+    if (H5Dread(set, memory_type(type), memory_space, file_space, H5P_DEFAULT, data) < 0)
+        return h5_failure(h5, PTIE_EFORMAT, "read", path);
+    return PTIE_OK;
+}
+
+/* --- attributes ---------------------------------------------------------------------------------- */
+
+/* Opens the object, made as a group if it is not there. */
+static ptie_status open_object(ptie_h5 *h5, const char *object, hid_t *id) {
+    *id = H5Oopen(h5->file, object, H5P_DEFAULT);
+    if (*id >= 0) return PTIE_OK;
+    SCOPED_ID links = H5Pcreate(H5P_LINK_CREATE), creation = H5Pcreate(H5P_GROUP_CREATE);
+    H5Pset_create_intermediate_group(links, 1);
+    H5Pset_obj_track_times(creation, false);
+    *id = H5Gcreate2(h5->file, object, links, creation, H5P_DEFAULT);
+    return *id >= 0 ? PTIE_OK : write_failure(h5, "create group", object);
+}
+
+/* Sets or replaces one attribute. */
+static ptie_status write_attribute(ptie_h5 *h5, const char *object, const char *name, hid_t stored,
+                                   hid_t memory, hid_t space, const void *value) {
+    SCOPED_ID owner = H5I_INVALID_HID;
+    PTIE_TRY(open_object(h5, object, &owner));
+    if (H5Aexists(owner, name) > 0) H5Adelete(owner, name);
+    SCOPED_ID attribute = H5Acreate2(owner, name, stored, space, H5P_DEFAULT, H5P_DEFAULT);
+    if (attribute < 0 || H5Awrite(attribute, memory, value) < 0)
+        return write_failure(h5, "write attribute", name);
+    return PTIE_OK;
+}
+
+/* Variable length, UTF-8: what h5py hands out as str (a fixed length would become bytes). */
+static hid_t text_type(void) {
+    hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, H5T_VARIABLE);
+    H5Tset_cset(type, H5T_CSET_UTF8);
+    return type;
+}
+
+ptie_status ptie_h5_set_text(ptie_h5 *h5, const char *object, const char *name, const char *value) {
+    LOCK_HDF5;
+    SCOPED_ID type = text_type();
+    SCOPED_ID space = H5Screate(H5S_SCALAR);
+    return write_attribute(h5, object, name, type, type, space, &value);
+}
+
+ptie_status ptie_h5_set_texts(ptie_h5 *h5, const char *object, const char *name,
+                              const char *const *values, size_t count) {
+    LOCK_HDF5;
+    SCOPED_ID type = text_type();
+    SCOPED_ID space = H5Screate_simple(1, (hsize_t[]){count}, NULL);
+    return write_attribute(h5, object, name, type, type, space, values);
+}
+
+ptie_status ptie_h5_set_number(ptie_h5 *h5, const char *object, const char *name, double value) {
+    LOCK_HDF5;
+    SCOPED_ID space = H5Screate(H5S_SCALAR);
+    return write_attribute(h5, object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, space, &value);
+}
+
+ptie_status ptie_h5_set_integer(ptie_h5 *h5, const char *object, const char *name, int64_t value) {
+    LOCK_HDF5;
+    SCOPED_ID space = H5Screate(H5S_SCALAR);
+    return write_attribute(h5, object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, space, &value);
+}
+
+/* Opens an attribute that holds one value. */
+static ptie_status open_single(const ptie_h5 *h5, const char *object, const char *name, hid_t *attribute,
+                               hid_t *type) {
+    *attribute = H5Aopen_by_name(h5->file, object, name, H5P_DEFAULT, H5P_DEFAULT);
+    if (*attribute < 0)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: %s has no attribute '%s'", h5->path, object, name);
+    *type = H5Aget_type(*attribute);
+    SCOPED_ID space = H5Aget_space(*attribute);
+    hssize_t found = H5Sget_simple_extent_npoints(space);
+    if (found != 1)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: attribute '%s' of %s is a list (expected one value, found %lld)",
+                         h5->path, name, object, (long long)found);
+    return PTIE_OK;
+}
+
+static ptie_status read_single(ptie_h5 *h5, const char *object, const char *name, hid_t memory,
+                               void *value) {
+    LOCK_HDF5;
+    SCOPED_ID attribute = H5I_INVALID_HID, type = H5I_INVALID_HID;
+    PTIE_TRY(open_single(h5, object, name, &attribute, &type));
+    H5T_class_t kind = H5Tget_class(type);
+    if (kind != H5T_INTEGER && kind != H5T_FLOAT)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: attribute '%s' of %s is not a number", h5->path, name, object);
+    return H5Aread(attribute, memory, value) >= 0 ? PTIE_OK
+                                                  : h5_failure(h5, PTIE_EFORMAT, "read attribute", name);
+}
+
+ptie_status ptie_h5_get_number(ptie_h5 *h5, const char *object, const char *name, double *value) {
+    return read_single(h5, object, name, H5T_NATIVE_DOUBLE, value);
+}
+
+ptie_status ptie_h5_get_integer(ptie_h5 *h5, const char *object, const char *name, int64_t *value) {
+    return read_single(h5, object, name, H5T_NATIVE_INT64, value);
+}
+
+/* A string that HDF5 allocates (the kind h5py writes). */
+static ptie_status read_variable_text(const ptie_h5 *h5, const char *name, hid_t attribute, hid_t type,
+                                      char **value) {
+    char *text = NULL;
+    if (H5Aread(attribute, type, &text) < 0) return h5_failure(h5, PTIE_EFORMAT, "read attribute", name);
+    *value = ptie_strdup(text ? text : "");
+    H5free_memory(text);
+    return *value ? PTIE_OK : PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", h5->path);
+}
+
+static ptie_status read_fixed_text(const ptie_h5 *h5, const char *name, hid_t attribute, hid_t type,
+                                   char **value) {
+    char *text;
+    size_t bytes = H5Tget_size(type);
+    PTIE_TRY(ptie_alloc_status(&text, bytes + 1, 1, name));
+    if (H5Aread(attribute, type, text) < 0) {
+        ptie_free(text);
+        return h5_failure(h5, PTIE_EFORMAT, "read attribute", name);
+    }
+    if (H5Tget_strpad(type) == H5T_STR_SPACEPAD)
+        while (bytes > 0 && text[bytes - 1] == ' ') text[--bytes] = 0;
+    *value = text;
+    return PTIE_OK;
+}
+
+ptie_status ptie_h5_get_text(ptie_h5 *h5, const char *object, const char *name, char **value) {
+    *value = NULL;
+    LOCK_HDF5;
+    SCOPED_ID attribute = H5I_INVALID_HID, type = H5I_INVALID_HID;
+    PTIE_TRY(open_single(h5, object, name, &attribute, &type));
+    if (H5Tget_class(type) != H5T_STRING)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: attribute '%s' of %s is not text", h5->path, name, object);
+    return H5Tis_variable_str(type) > 0 ? read_variable_text(h5, name, attribute, type, value)
+                                        : read_fixed_text(h5, name, attribute, type, value);
+}

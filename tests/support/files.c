@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "support/files.h"
+
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+void support_assert_nothing_left(const char *path) {
+    char part[1100];
+    snprintf(part, sizeof part, "%s.part", path);
+    assert_false(support_exists(path));
+    assert_false(support_exists(part));
+}
+
+static void set_file_size(rlim_t bytes) {
+    struct rlimit limit;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
+    limit.rlim_cur = bytes;
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+}
+
+void support_check_full_disk(const char *path, support_file_fn write) {
+    size_t bytes;
+    assert_ok(write(path));
+    free(support_read(path, &bytes));
+    remove(path);
+    signal(SIGXFSZ, SIG_IGN); /* the write fails with EFBIG instead */
+    for (size_t part = 0; part < 64; part++) {
+        set_file_size(bytes * part / 64);
+        ptie_status status = write(path);
+        set_file_size(RLIM_INFINITY);
+        assert_fails(status, PTIE_EIO, "File too large");
+        assert_non_null(strstr(ptie_last_error(), path));
+        support_assert_nothing_left(path);
+    }
+}
+
+void support_check_truncations(const char *path, support_file_fn read, size_t padding) {
+    size_t bytes;
+    unsigned char *data = support_read(path, &bytes);
+    const char *cut = support_temporary("cut");
+    assert_ok(read(path));
+    for (size_t length = 0; length < bytes; length++) {
+        support_write(cut, data, length);
+        ptie_status status = read(cut);
+        bool refused = (status == PTIE_EFORMAT || status == PTIE_EIO || status == PTIE_EUNSUPPORTED) &&
+                       strstr(ptie_last_error(), cut);
+        if (refused || (status == PTIE_OK && length >= bytes - padding)) continue;
+        fail_msg("%s cut to %zu of %zu bytes: found %s: %s", path, length, bytes,
+                 ptie_status_name(status), status ? ptie_last_error() : "");
+    }
+    free(data);
+}
+
+void support_python(const char *program, const char *path) {
+    if (access("/usr/bin/python3", X_OK) != 0) {
+        print_message("# no /usr/bin/python3\n");
+        skip();
+    }
+    const char *script = support_temporary("program.py");
+    char command[2200];
+    support_write(script, program, strlen(program));
+    snprintf(command, sizeof command, "/usr/bin/python3 '%s' '%s' 1>&2", script, path);
+    int result = system(command);
+    if (!WIFEXITED(result) || WEXITSTATUS(result) != 0) fail_msg("%s: Python disagrees", path);
+}
