@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Turbulent eddies. */
+#include "flow/morphology.h"
+
+/* Until its own model lands. */
+static ptie_status draw(float *map, const ptie_scene *scene, ptie_random *random) {
+    return ptie_flow_jet.parametric(map, scene, random);
+}
+
+const ptie_morphology ptie_flow_eddies = {"eddies", "Turbulent eddies", draw, draw};

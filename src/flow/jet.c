@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Jet plume. */
+#include <math.h>
+
+#include "flow/morphology.h"
+#include "flow/stream.h"
+
+typedef struct jet {
+    ptie_stream stream;
+    float decay;              /* length over which it fades, units */
+    float gusts;              /* fluctuation of its strength */
+    float sharpness;          /* 0: Gaussian profile; towards 1: flat with steep flanks near the source */
+    float core;               /* length of the potential core, units */
+    float cell, cells, cell_decay; /* shock cells: length, strength, distance over which they fade */
+    float head, head_steepness;    /* how far a starting jet has come */
+} jet;
+
+static float profile(const jet *j, const ptie_parcel *p) {
+    float gaussian = ptie_bell(p->across);
+    float flat = j->sharpness * (1 - ptie_smoothstep(p->x / j->core));
+    if (flat <= 0) return gaussian;
+    return gaussian + flat * (ptie_rise(4 * (1.2f - fabsf(p->across))) - gaussian);
+}
+
+static float at(const void *flow, float x, float y) {
+    const jet *j = flow;
+    if (x < -0.02f) return 0;
+    ptie_parcel p = ptie_stream_at(&j->stream, x, y);
+    float value = profile(j, &p) * expf(-p.x / j->decay) * ptie_smoothstep(x / 0.01f);
+    value *= 1 + j->gusts * p.gust;
+    if (j->cells > 0)
+        value *= 1 + j->cells * expf(-x / j->cell_decay) * cosf(x / j->cell) * ptie_bell(1.3f * p.across);
+    return value * ptie_rise((j->head - p.x) * j->head_steepness);
+}
+
+static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *random) {
+    ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, -0.15, 0.3, 0.5);
+    double length = (double)axes.end;
+    ptie_stream_ranges ranges = {0.015, 0.09, 0.02, 0.16, 0.05, 0.5};
+    jet j = {0};
+    j.decay = ptie_draw(random, 0.25, 1.6) * axes.end;
+    j.gusts = ptie_draw(random, 0, 0.35);
+    j.sharpness = ptie_draw(random, 0, 1);
+    j.core = ptie_draw(random, 0.1, 0.6);
+    j.cell = ptie_draw(random, 0.006, 0.03);
+    j.cells = ptie_chance(random, 0.3) ? ptie_draw(random, 0.2, 0.6) : 0;
+    j.cell_decay = ptie_draw(random, 0.15, 0.6);
+    bool starting = ptie_chance(random, 0.25);
+    double begun = ptie_random_uniform(random, 0.3, 0.9) * length;
+    j.head_steepness = ptie_draw(random, 6, 40);
+    PTIE_TRY(ptie_stream_draw(&j.stream, scene, random, &ranges, length));
+    j.head = starting ? (float)(begun + 0.5 * j.stream.speed * scene->time_s) : 1e3f;
+    ptie_paint(map, scene, &axes, at, &j);
+    ptie_stream_free(&j.stream);
+    return PTIE_OK;
+}
+
+const ptie_morphology ptie_flow_jet = {"jet", "Jet plume", parametric, parametric};

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "flow/scene.h"
+
+#include <math.h>
+
+#define PI 3.14159265358979323846
+
+static int32_t smaller(int32_t a, int32_t b) { return a < b ? a : b; }
+
+static double heading_draw(ptie_random *random, ptie_heading heading) {
+    double tilt = 8.0 * PI / 180 * ptie_random_normal(random);
+    double choice = ptie_random_uniform(random, 0, 1), any = ptie_random_uniform(random, -PI, PI);
+    bool back = ptie_chance(random, 0.5);
+    if (heading == PTIE_HEADING_ANY || choice < 0.08) return any;
+    bool upright = heading == PTIE_HEADING_UP ? choice < 0.8 : choice < 0.2;
+    if (upright) return (heading == PTIE_HEADING_UP || back ? -PI / 2 : PI / 2) + tilt;
+    return (back ? PI : 0) + tilt;
+}
+
+ptie_axes ptie_axes_draw(const ptie_scene *scene, ptie_random *random, ptie_heading heading,
+                         double origin_low, double origin_high, double across) {
+    double angle = heading_draw(random, heading);
+    double place = ptie_random_uniform(random, origin_low, origin_high);
+    double aside = ptie_random_uniform(random, -across, across);
+    double mirror = ptie_chance(random, 0.5) ? 1 : -1;
+    double c = cos(angle), s = sin(angle), w = scene->width, h = scene->height;
+    double unit_px = smaller(scene->width, scene->height);
+    double along_px = fabs(c) * w + fabs(s) * h, across_px = fabs(s) * w + fabs(c) * h;
+    double forward = (place - 0.5) * along_px, sideways = aside * across_px / 2;
+    return (ptie_axes){
+        .origin_x = (float)((w - 1) / 2 + c * forward - s * sideways),
+        .origin_y = (float)((h - 1) / 2 + s * forward + c * sideways),
+        .cosine = (float)c,
+        .sine = (float)s,
+        .mirror = (float)mirror,
+        .pixel = (float)(1 / unit_px),
+        .start = (float)(-place * along_px / unit_px),
+        .end = (float)((1 - place) * along_px / unit_px),
+        .side = (float)(across_px / unit_px / 2),
+    };
+}
+
+double ptie_scene_unit_m(const ptie_scene *scene) {
+    return smaller(scene->width, scene->height) * scene->pixel_m;
+}
+
+double ptie_speed_draw(const ptie_scene *scene, ptie_random *random) {
+    return ptie_random_log_uniform(random, 2, 12) / ptie_scene_unit_m(scene);
+}
+
+double ptie_scene_wavenumber(const ptie_scene *scene) { return 2 * PI / scene->wavelength_m; }
+
+void ptie_paint(float *map, const ptie_scene *scene, const ptie_axes *axes, ptie_point point,
+                const void *flow) {
+    float step_x = axes->cosine * axes->pixel, step_y = -axes->mirror * axes->sine * axes->pixel;
+    for (int32_t y = 0; y < scene->height; y++) {
+        float dx = -axes->origin_x * axes->pixel, dy = ((float)y - axes->origin_y) * axes->pixel;
+        float left_x = axes->cosine * dx + axes->sine * dy;
+        float left_y = axes->mirror * (axes->cosine * dy - axes->sine * dx);
+        float *row = map + (size_t)y * (size_t)scene->width;
+        for (int32_t x = 0; x < scene->width; x++)
+            row[x] = point(flow, left_x + step_x * (float)x, left_y + step_y * (float)x);
+    }
+}
+
+/* Quadratic form a dx^2 + 2 b dx dy + c dy^2 of a spot, in px. */
+typedef struct spot_form {
+    double x, y, a, b, c;
+} spot_form;
+
+static spot_form form_of(const ptie_axes *axes, const ptie_spot *spot) {
+    double along = (double)(spot->along / axes->pixel), across = (double)(spot->across / axes->pixel);
+    double turn = (double)(axes->mirror * spot->angle);
+    double flow = atan2((double)axes->sine, (double)axes->cosine) + turn;
+    double c = cos(flow), s = sin(flow), p = 1 / (along * along), q = 1 / (across * across);
+    double x = (double)(spot->x / axes->pixel), y = (double)(axes->mirror * spot->y / axes->pixel);
+    return (spot_form){
+        .x = (double)axes->origin_x + (double)axes->cosine * x - (double)axes->sine * y,
+        .y = (double)axes->origin_y + (double)axes->sine * x + (double)axes->cosine * y,
+        .a = c * c * p + s * s * q,
+        .b = c * s * (p - q),
+        .c = s * s * p + c * c * q,
+    };
+}
+
+void ptie_splat(float *map, const ptie_scene *scene, const ptie_axes *axes, const ptie_spot *spot) {
+    const double reach = 3.5 * 3.5;
+    spot_form f = form_of(axes, spot);
+    double tall = sqrt(reach * f.a / (f.a * f.c - f.b * f.b)); /* half height of the ellipse */
+    int32_t top = (int32_t)fmax(0, ceil(f.y - tall));
+    int32_t bottom = (int32_t)fmin(scene->height - 1, floor(f.y + tall));
+    double ratio_step = exp(-f.a); /* of the ratio of neighbours, from pixel to pixel */
+    for (int32_t y = top; y <= bottom; y++) {
+        double dy = y - f.y, middle = -f.b * dy / f.a;
+        double wide = sqrt(fmax(0, middle * middle - (f.c * dy * dy - reach) / f.a));
+        int32_t left = (int32_t)fmax(0, ceil(f.x + middle - wide));
+        int32_t right = (int32_t)fmin(scene->width - 1, floor(f.x + middle + wide));
+        if (left > right) continue;
+        double dx = left - f.x;
+        /* A Gaussian along a row by two products per pixel: g(x+1) = g(x) r(x), r(x+1) = r(x) q. */
+        double value = (double)spot->height * exp(-0.5 * (f.a * dx * dx + 2 * f.b * dx * dy + f.c * dy * dy));
+        double ratio = exp(-f.a * (dx + 0.5) - f.b * dy);
+        float *row = map + (size_t)y * (size_t)scene->width;
+        for (int32_t x = left; x <= right; x++) {
+            row[x] += (float)value;
+            value *= ratio;
+            ratio *= ratio_step;
+        }
+    }
+}
+
+ptie_train ptie_train_make(double spacing, double shift, double start, double end) {
+    return (ptie_train){.spacing = spacing,
+                        .shift = shift,
+                        .first = (int64_t)ceil((start - shift) / spacing),
+                        .last = (int64_t)floor((end - shift) / spacing)};
+}
+
+double ptie_train_car(const ptie_train *train, int64_t number, uint64_t key, ptie_random *random) {
+    ptie_random_init(random, key, PTIE_STREAM_TEXTURE, (uint64_t)number);
+    return (double)number * train->spacing + train->shift;
+}
+
+uint64_t ptie_key_draw(ptie_random *random) {
+    uint64_t high = ptie_random_u32(random);
+    return high << 32 | ptie_random_u32(random);
+}
+
+bool ptie_chance(ptie_random *random, double probability) {
+    return ptie_random_uniform(random, 0, 1) < probability;
+}
+
+float ptie_draw(ptie_random *random, double low, double high) {
+    return (float)ptie_random_uniform(random, low, high);
+}
+
+float ptie_draw_log(ptie_random *random, double low, double high) {
+    return (float)ptie_random_log_uniform(random, low, high);
+}
+
+float ptie_bell(float t) { return expf(-0.5f * t * t); }
+
+float ptie_smoothstep(float t) {
+    if (t <= 0) return 0;
+    if (t >= 1) return 1;
+    return t * t * (3 - 2 * t);
+}
+
+float ptie_rise(float t) { return 1 / (1 + expf(-2 * t)); }

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What every morphology stands on: the frame it fills, its own coordinates, and a painter. */
+#ifndef PTIE_FLOW_SCENE_H
+#define PTIE_FLOW_SCENE_H
+
+#include "base/random.h"
+#include "base/status.h"
+
+typedef struct ptie_scene {
+    int32_t width, height; /* px */
+    double pixel_m, wavelength_m, time_s;
+} ptie_scene;
+
+/* Flow coordinates: x runs downstream from the flow's origin, y across it, both in units of the frame's
+   shorter side. */
+typedef struct ptie_axes {
+    float origin_x, origin_y; /* px */
+    float cosine, sine;       /* of the flow direction; image rows run downwards */
+    float mirror;             /* +1 or -1: handedness */
+    float pixel;              /* one px in units */
+    float start, end;         /* x where the frame begins and ends along the flow */
+    float side;               /* half the frame across the flow */
+} ptie_axes;
+
+typedef enum ptie_heading {
+    PTIE_HEADING_ACROSS, /* mostly horizontal, either way */
+    PTIE_HEADING_UP,     /* mostly upwards, as hot gas goes */
+    PTIE_HEADING_ANY
+} ptie_heading;
+
+/* Draws a direction and an origin.  `origin` is where the origin lies along the flow: 0 at the frame's
+   upstream end, 1 at its downstream end; `across` is its largest distance from the centre line as a
+   share of the frame's half. */
+ptie_axes ptie_axes_draw(const ptie_scene *scene, ptie_random *random, ptie_heading heading,
+                         double origin_low, double origin_high, double across);
+
+/* Length of a unit in m. */
+double ptie_scene_unit_m(const ptie_scene *scene);
+/* A convection speed in units per second: 2 .. 12 m/s, which at 25,000 frames/s and 20 um pixels is
+   4 .. 24 px per frame. */
+double ptie_speed_draw(const ptie_scene *scene, ptie_random *random);
+/* Wave number 2 pi / lambda of the light, rad/m. */
+double ptie_scene_wavenumber(const ptie_scene *scene);
+
+/* Value of a flow at a point of its coordinates. */
+typedef float (*ptie_point)(const void *flow, float x, float y);
+/* map = point(flow, x, y) everywhere. */
+void ptie_paint(float *map, const ptie_scene *scene, const ptie_axes *axes, ptie_point point,
+                const void *flow);
+
+/* A Gaussian spot with half-axes (standard deviations) along and across the direction `angle`. */
+typedef struct ptie_spot {
+    float x, y; /* flow coordinates */
+    float along, across, angle, height;
+} ptie_spot;
+/* Adds a spot, out to 3.5 standard deviations. */
+void ptie_splat(float *map, const ptie_scene *scene, const ptie_axes *axes, const ptie_spot *spot);
+
+/* Things that follow each other downstream at a spacing, born upstream from the hash of their number:
+   calls for the numbers whose place (number * spacing + shift) lies in start .. end. */
+typedef struct ptie_train {
+    double spacing, shift; /* units; shift = speed * time */
+    int64_t first, last;
+} ptie_train;
+ptie_train ptie_train_make(double spacing, double shift, double start, double end);
+/* Place of car `number`, and its own random numbers. */
+double ptie_train_car(const ptie_train *train, int64_t number, uint64_t key, ptie_random *random);
+
+/* 64 random bits, to key something. */
+uint64_t ptie_key_draw(ptie_random *random);
+/* True with the given chance. */
+bool ptie_chance(ptie_random *random, double probability);
+/* uniform and log-uniform as float. */
+float ptie_draw(ptie_random *random, double low, double high);
+float ptie_draw_log(ptie_random *random, double low, double high);
+
+/* exp(-t^2 / 2) */
+float ptie_bell(float t);
+/* 0 -> 1 over t = 0 .. 1, with continuous slope. */
+float ptie_smoothstep(float t);
+/* 0 -> 1 around t = 0, as (1 + tanh t) / 2. */
+float ptie_rise(float t);
+
+#endif
