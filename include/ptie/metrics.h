@@ -12,11 +12,11 @@ typedef struct ptie_comparison {
     double mae;         /* mean |a - b| (Q2) */
     double rmse;        /* root mean square of a - b */
     double ssim;        /* 11x11 Gaussian, sigma 1.5, valid windows (Q3); NaN below 11 x 11 */
-    double correlation; /* Pearson; NaN if an image is constant */
+    double correlation; /* Pearson (Q8); NaN if an image is constant */
 } ptie_comparison;
 
 /* Compares an estimate with the truth.  `range` is MAX of PSNR and L of SSIM: 1 for [0, 1] maps.
-   Errors: PTIE_EINVAL, PTIE_ENUMERIC, PTIE_ENOMEM (SSIM windows). */
+   Sizes are 1..32768.  Errors: PTIE_EINVAL, PTIE_ENUMERIC, PTIE_ENOMEM (SSIM windows). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_compare(ptie_comparison *out, const float *estimate,
                                                  const float *truth, int32_t width_px,
                                                  int32_t height_px, double range);
@@ -34,10 +34,11 @@ PTIE_API PTIE_NODISCARD ptie_status ptie_regions_from_rects(uint8_t *labels, int
                                                             int32_t height_px, ptie_rect jet,
                                                             ptie_rect background);
 
-/* Proposes regions from a map (best: the time average of the denoised phase): jet = pixels whose
-   magnitude above the border level exceeds the Otsu threshold, grown to a connected set; background =
-   the rest, kept 5 % of the image away from the jet (Q9).  Allocates scratch.
-   Errors: PTIE_ENUMERIC (not finite, or constant map), PTIE_ENOMEM. */
+/* Proposes regions from a map (best: the time average of the denoised phase) of a flow of either sign:
+   jet = pixels whose distance from the border's median exceeds the Otsu threshold, cleaned, the large
+   connected parts of it; background = the rest, kept 5 % of the image away from the jet (Q9).
+   Allocates scratch.  Errors: PTIE_ENUMERIC (not finite, constant, or without room for one of the
+   regions), PTIE_ENOMEM. */
 PTIE_API PTIE_NODISCARD ptie_status ptie_regions_propose(uint8_t *labels, const float *map,
                                                          int32_t width_px, int32_t height_px);
 

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* An estimate against the truth, pixel by pixel.  docs/math.md (Q1), (Q2), (Q8). */
+#include <math.h>
+
+#include "base/image.h"
+#include "metrics/metrics.h"
+
+static double mean(const float *values, size_t count) {
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) sum += (double)values[i];
+    return sum / (double)count;
+}
+
+/* Pearson's r from centred sums; 0 / 0 = NaN for a constant image. */
+static double correlation(const float *a, const float *b, size_t count) {
+    const double mean_a = mean(a, count), mean_b = mean(b, count);
+    double aa = 0, bb = 0, ab = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double u = (double)a[i] - mean_a, v = (double)b[i] - mean_b;
+        aa += u * u, bb += v * v, ab += u * v;
+    }
+    return ab / sqrt(aa * bb);
+}
+
+ptie_status ptie_metrics_compare(ptie_comparison *out, const float *estimate, const float *truth,
+                                 int32_t width, int32_t height, double range) {
+    PTIE_TRY(ptie_image_finite(estimate, width, height, "estimate"));
+    PTIE_TRY(ptie_image_finite(truth, width, height, "truth"));
+    double ssim;
+    PTIE_TRY(ptie_metrics_ssim(&ssim, estimate, truth, width, height, range));
+    const size_t count = (size_t)width * (size_t)height;
+    double absolute = 0, squares = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double d = (double)estimate[i] - (double)truth[i];
+        absolute += fabs(d), squares += d * d;
+    }
+    const double mse = squares / (double)count;
+    *out = (ptie_comparison){
+        .psnr_db = 10 * log10(range * range / mse),
+        .mae = absolute / (double)count,
+        .rmse = sqrt(mse),
+        .ssim = ssim,
+        .correlation = correlation(estimate, truth, count),
+    };
+    return PTIE_OK;
+}
