@@ -10,7 +10,10 @@
 #include "io/safetensors.h"
 #include "kernel/engine.h"
 
+/* Fails with `status` if a parameter is outside its documented range. */
+ptie_status ptie_nn_check(const ptie_model_params *params, ptie_status status, const char *where);
 ptie_status ptie_nn_create(ptie_model **out, const ptie_model_params *params);
+void ptie_nn_free(ptie_model *model);
 ptie_status ptie_nn_load(ptie_model **out, const char *path);
 /* The same from an open file (a checkpoint holds a model and more). */
 ptie_status ptie_nn_from_safetensors(ptie_model **out, const ptie_safetensors *file, const char *where);
@@ -20,6 +23,9 @@ ptie_status ptie_nn_tensors(const ptie_model *model, ptie_tensor_view **tensors,
                             ptie_note **notes, size_t *note_count);
 /* Copies all tensors (trainable and running statistics) from one model to another of the same shape. */
 void ptie_nn_copy(ptie_model *to, const ptie_model *from);
+const char *ptie_nn_note(const ptie_model *model, const char *key); /* NULL if it is not there */
+/* PTIE_EINVAL for a key that describes the network itself. */
+ptie_status ptie_nn_set_note(ptie_model *model, const char *key, const char *value);
 
 /* Weights of the loss (paper Eq. 6). */
 typedef struct ptie_loss_weights {
@@ -59,6 +65,7 @@ float *ptie_stepper_state(ptie_stepper *stepper, int which, const char *name, si
 /* Inference plan; single-threaded run. */
 ptie_status ptie_nn_denoiser(ptie_denoiser **out, const ptie_engine *engine, const ptie_model *model,
                              int32_t width, int32_t height);
+void ptie_nn_denoiser_free(ptie_denoiser *denoiser);
 size_t ptie_nn_denoiser_scratch(const ptie_denoiser *denoiser);
 ptie_status ptie_nn_denoise(const ptie_denoiser *denoiser, float *clean, const float *noisy, void *scratch);
 ptie_status ptie_nn_denoise_rad(const ptie_denoiser *denoiser, float *clean_rad, const float *noisy_rad,
@@ -66,7 +73,8 @@ ptie_status ptie_nn_denoise_rad(const ptie_denoiser *denoiser, float *clean_rad,
 
 /* Loss of one pair outside training (evaluation).  scratch: ptie_loss_scratch bytes. */
 size_t ptie_loss_scratch(int32_t width, int32_t height);
-void ptie_loss_measure(ptie_loss_parts *parts, const float *estimate, const float *clean, int32_t width,
-                       int32_t height, ptie_loss_weights weights, void *scratch);
+void ptie_loss_measure(const ptie_engine *engine, ptie_loss_parts *parts, const float *estimate,
+                       const float *clean, int32_t width, int32_t height, ptie_loss_weights weights,
+                       void *scratch);
 
 #endif

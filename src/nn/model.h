@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a model is inside. */
+#ifndef PTIE_NN_MODEL_H
+#define PTIE_NN_MODEL_H
+
+#include "nn/graph.h"
+#include "nn/nn.h"
+
+/* Metadata of the file that say what the network is. */
+enum { PTIE_MODEL_FACTS = 8 };
+
+typedef struct ptie_fact {
+    const char *key;
+    char value[72];
+} ptie_fact;
+
+struct ptie_model {
+    ptie_model_params params;
+    ptie_graph graph;
+    float *values; /* all parameters, places in graph.params; trainable ones first */
+    char name[72]; /* "unet-8-16-32" */
+    ptie_fact facts[PTIE_MODEL_FACTS];
+    ptie_note *notes; /* the user's, keys and values owned */
+    size_t note_count;
+};
+
+/* Parameter `which` (PTIE_WEIGHT, ...) of an operation. */
+static inline float *ptie_model_values(const ptie_model *model, const ptie_op *op, int32_t which) {
+    return model->values + model->graph.params[op->params + which].offset;
+}
+
+/* Writes facts and name from the parameters. */
+void ptie_model_describe(ptie_model *model);
+/* Value of a fact; NULL if `key` is not one. */
+const char *ptie_model_fact(const ptie_model *model, const char *key);
+
+#endif
