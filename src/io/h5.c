@@ -3,21 +3,21 @@
 #include "io/h5.h"
 
 #include <assert.h>
-#include <fcntl.h>
-#include <hdf5.h>
 #include <pthread.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "io/h5_driver.h"
 #include "io/input.h"
+
+#define REASON_BYTES 160
 
 struct ptie_h5 {
     hid_t file;
     char *path;              /* what messages call it */
     ptie_output_file output; /* open while the file is being written */
-    bool broken;             /* a write failed: the file can only be discarded */
+    int failure;             /* errno of the first write that failed, kept by the driver */
 };
 
 static pthread_mutex_t hdf5_mutex = PTHREAD_MUTEX_INITIALIZER;
@@ -49,42 +49,26 @@ static void close_id(hid_t *id) {
 #define LOCK_HDF5 printing lock_ __attribute__((cleanup(leave), unused)) = enter()
 #define SCOPED_ID __attribute__((cleanup(close_id))) hid_t
 
-/* Takes the reason from the deepest entry: the system's words where there are some. */
+/* Takes the deepest entry: the reason itself, not its consequences. */
 static herr_t take_reason(unsigned depth, const H5E_error2_t *entry, void *data) {
     (void)depth;
-    char *reason = data;
-    static const char words[] = "error message = '";
-    const char *found = strstr(entry->desc, words);
-    const char *start = found ? found + sizeof words - 1 : entry->desc;
-    size_t length = found ? strcspn(start, "'") : strlen(start);
-    snprintf(reason, 160, "%.*s", (int)length, start);
+    snprintf(data, REASON_BYTES, "%s", entry->desc);
     return 1; /* enough */
 }
 
 /* Must come right after the call that failed: the next one clears the stack. */
 static ptie_status h5_failure(const ptie_h5 *h5, ptie_status status, const char *what, const char *object) {
-    char reason[160] = "no reason given";
-    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_reason, reason);
+    char reason[REASON_BYTES] = "no reason given";
+    if (h5->failure)
+        snprintf(reason, sizeof reason, "%s", strerror(h5->failure));
+    else
+        H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_reason, reason);
     return PTIE_FAIL(status, "%s: cannot %s %s: %s", h5->path, what, object, reason);
 }
 
-/* HDF5 cannot close what it cannot write out (disk full): it would try again, at exit too, and crash.  So
-   whatever it still holds goes to the null device. */
-static void divert(ptie_h5 *h5) {
-    int *descriptor = NULL;
-    h5->broken = true;
-    if (H5Fget_vfd_handle(h5->file, H5P_DEFAULT, (void **)&descriptor) < 0 || !descriptor) return;
-    int null = open("/dev/null", O_RDWR | O_CLOEXEC);
-    if (null < 0) return;
-    dup2(null, *descriptor);
-    close(null);
-}
-
-/* Takes the reason first and diverts before anything is closed. */
-static ptie_status write_failure(ptie_h5 *h5, const char *what, const char *object) {
-    ptie_status status = h5_failure(h5, PTIE_EIO, what, object);
-    divert(h5);
-    return status;
+/* The result of a call that writes. */
+static ptie_status written(const ptie_h5 *h5, bool done, const char *what, const char *object) {
+    return done && h5->failure == 0 ? PTIE_OK : h5_failure(h5, PTIE_EIO, what, object);
 }
 
 static hid_t memory_type(ptie_h5_type type) {
@@ -135,8 +119,9 @@ static ptie_status create_file(ptie_h5 *h5) {
     SCOPED_ID creation = H5Pcreate(H5P_FILE_CREATE), access = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_obj_track_times(creation, false); /* the root group */
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
-    h5->file = H5Fcreate(h5->output.part, H5F_ACC_TRUNC, creation, access);
-    return h5->file >= 0 ? PTIE_OK : h5_failure(h5, PTIE_EIO, "create", "the file");
+    if (ptie_h5_use_driver(access, &h5->failure) >= 0)
+        h5->file = H5Fcreate(h5->output.part, H5F_ACC_TRUNC, creation, access);
+    return written(h5, h5->file >= 0, "create", "the file");
 }
 
 ptie_status ptie_h5_create(ptie_h5 **out, const char *path, bool overwrite) {
@@ -146,8 +131,7 @@ ptie_status ptie_h5_create(ptie_h5 **out, const char *path, bool overwrite) {
     ptie_status status = ptie_output_open(&h5->output, path, overwrite);
     if (status == PTIE_OK) status = create_file(h5);
     if (status != PTIE_OK) {
-        ptie_output_discard(&h5->output);
-        h5_free(h5);
+        ptie_h5_discard(h5);
         return status;
     }
     *out = h5;
@@ -171,40 +155,31 @@ ptie_status ptie_h5_open(ptie_h5 **out, const char *path) {
     PTIE_TRY(h5_new(&h5, path));
     ptie_status status = open_file(h5);
     if (status != PTIE_OK) {
-        h5_free(h5);
+        ptie_h5_discard(h5);
         return status;
     }
     *out = h5;
     return PTIE_OK;
 }
 
-/* Closes the HDF5 side; with `keep`, what was written must have reached the system. */
-static ptie_status close_file(ptie_h5 *h5, bool keep) {
+/* Closes the HDF5 side: after this nothing more is written. */
+static ptie_status close_file(ptie_h5 *h5) {
     LOCK_HDF5;
-    ptie_status status = PTIE_OK;
-    if (h5->output.part && !keep) divert(h5);
-    if (h5->output.part && keep && H5Fflush(h5->file, H5F_SCOPE_GLOBAL) < 0)
-        status = write_failure(h5, "write", "the file");
-    if (H5Fclose(h5->file) < 0 && keep && status == PTIE_OK) status = write_failure(h5, "close", "the file");
-    if (keep && status == PTIE_OK && h5->broken)
-        status = PTIE_FAIL(PTIE_EIO, "%s: cannot complete the file: a write failed before", h5->path);
-    return status;
+    return h5->file < 0 ? PTIE_OK : written(h5, H5Fclose(h5->file) >= 0, "write", "the file");
 }
 
 ptie_status ptie_h5_close(ptie_h5 *h5) {
     if (!h5) return PTIE_OK;
-    ptie_status status = close_file(h5, true);
-    if (status != PTIE_OK)
-        ptie_output_discard(&h5->output);
-    else if (h5->output.part)
-        status = ptie_output_commit(&h5->output);
+    ptie_status status = close_file(h5);
+    if (status == PTIE_OK && h5->output.part) status = ptie_output_commit(&h5->output);
+    ptie_output_discard(&h5->output);
     h5_free(h5);
     return status;
 }
 
 void ptie_h5_discard(ptie_h5 *h5) {
     if (!h5) return;
-    ptie_status ignored = close_file(h5, false);
+    ptie_status ignored = close_file(h5);
     (void)ignored; /* nothing of it is kept */
     ptie_output_discard(&h5->output);
     h5_free(h5);
@@ -227,7 +202,7 @@ ptie_status ptie_h5_dataset(ptie_h5 *h5, const char *path, ptie_h5_type type, in
     H5Pset_obj_track_times(creation, false);
     if (chunk_rows > 0) H5Pset_chunk(creation, rank, chunk);
     SCOPED_ID set = H5Dcreate2(h5->file, path, stored_type(type), space, links, creation, H5P_DEFAULT);
-    return set >= 0 ? PTIE_OK : write_failure(h5, "create", path);
+    return written(h5, set >= 0, "create", path);
 }
 
 static ptie_status open_set(const ptie_h5 *h5, const char *path, hid_t *set) {
@@ -291,7 +266,7 @@ static ptie_status grow(ptie_h5 *h5, const char *path, hid_t set, uint64_t neede
     H5Sget_simple_extent_dims(space, NULL, largest);
     if (needed <= dims[0] || largest[0] != H5S_UNLIMITED) return PTIE_OK;
     dims[0] = needed;
-    return H5Dset_extent(set, dims) >= 0 ? PTIE_OK : write_failure(h5, "extend", path);
+    return written(h5, H5Dset_extent(set, dims) >= 0, "extend", path);
 }
 
 ptie_status ptie_h5_write(ptie_h5 *h5, const char *path, ptie_h5_type type, uint64_t first,
@@ -301,11 +276,8 @@ ptie_status ptie_h5_write(ptie_h5 *h5, const char *path, ptie_h5_type type, uint
     PTIE_TRY(open_set(h5, path, &set));
     PTIE_TRY(grow(h5, path, set, first + count));
     PTIE_TRY(select_rows(h5, path, set, (rows){first, count}, &file_space, &memory_space));
-    /* Flushed here, because a failure while closing the set could not be handled. */
-    if (H5Dwrite(set, memory_type(type), memory_space, file_space, H5P_DEFAULT, data) < 0 ||
-        H5Dflush(set) < 0)
-        return write_failure(h5, "write", path);
-    return PTIE_OK;
+    herr_t result = H5Dwrite(set, memory_type(type), memory_space, file_space, H5P_DEFAULT, data);
+    return written(h5, result >= 0, "write", path);
 }
 
 ptie_status ptie_h5_read(ptie_h5 *h5, const char *path, ptie_h5_type type, uint64_t first,
@@ -329,7 +301,7 @@ static ptie_status open_object(ptie_h5 *h5, const char *object, hid_t *id) {
     H5Pset_create_intermediate_group(links, 1);
     H5Pset_obj_track_times(creation, false);
     *id = H5Gcreate2(h5->file, object, links, creation, H5P_DEFAULT);
-    return *id >= 0 ? PTIE_OK : write_failure(h5, "create group", object);
+    return written(h5, *id >= 0, "create group", object);
 }
 
 /* Sets or replaces one attribute. */
@@ -339,9 +311,8 @@ static ptie_status write_attribute(ptie_h5 *h5, const char *object, const char *
     PTIE_TRY(open_object(h5, object, &owner));
     if (H5Aexists(owner, name) > 0) H5Adelete(owner, name);
     SCOPED_ID attribute = H5Acreate2(owner, name, stored, space, H5P_DEFAULT, H5P_DEFAULT);
-    if (attribute < 0 || H5Awrite(attribute, memory, value) < 0)
-        return write_failure(h5, "write attribute", name);
-    return PTIE_OK;
+    bool done = attribute >= 0 && H5Awrite(attribute, memory, value) >= 0;
+    return written(h5, done, "write attribute", name);
 }
 
 /* Variable length, UTF-8: what h5py hands out as str (a fixed length would become bytes). */

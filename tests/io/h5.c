@@ -124,6 +124,23 @@ static void an_existing_file_is_kept(void **state) {
     assert_true(support_exists(path));
 }
 
+static ptie_status write_frames(const char *path) {
+    ptie_h5 *h5;
+    const float frame[16] = {1};
+    PTIE_TRY(ptie_h5_create(&h5, path, true));
+    ptie_status status = ptie_h5_dataset(h5, "/a/b", PTIE_H5_F32, 2, (uint64_t[]){0, 16}, 1);
+    for (uint64_t t = 0; t < 80 && status == PTIE_OK; t++)
+        status = ptie_h5_write(h5, "/a/b", PTIE_H5_F32, t, 1, frame);
+    if (status == PTIE_OK) return ptie_h5_close(h5);
+    ptie_h5_discard(h5);
+    return status;
+}
+
+static void a_full_disk_is_reported(void **state) {
+    (void)state;
+    support_check_full_disk(support_temporary("full.h5"), write_frames);
+}
+
 static void no_other_file_is_opened(void **state) {
     (void)state;
     ptie_h5 *h5;
@@ -168,6 +185,7 @@ int main(void) {
         cmocka_unit_test(the_same_content_is_the_same_bytes),
         cmocka_unit_test(a_discarded_file_is_gone),
         cmocka_unit_test(an_existing_file_is_kept),
+        cmocka_unit_test(a_full_disk_is_reported),
         cmocka_unit_test(no_other_file_is_opened),
         cmocka_unit_test(every_truncation_is_refused),
         cmocka_unit_test(python_reads_it),

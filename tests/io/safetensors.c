@@ -53,7 +53,7 @@ static void what_is_written_is_read(void **state) {
 static void bytes_are_those_of_the_format(void **state) {
     (void)state;
     const char *path = support_temporary("bytes.safetensors");
-    const char header[] = "{\"step\":{\"dtype\":\"F32\",\"shape\":[],\"data_offsets\":[0,4]}}        ";
+    const char header[] = "{\"step\":{\"dtype\":\"F32\",\"shape\":[],\"data_offsets\":[0,4]}}    ";
     size_t bytes;
     assert_ok(ptie_safetensors_write(path, &tensors[2], 1, NULL, 0, false));
     unsigned char *data = support_read(path, &bytes);
