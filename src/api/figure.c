@@ -21,7 +21,8 @@ static ptie_status check_panel(const ptie_panel *panel, const char *where) {
     PTIE_TRY(ptie_check_integer(panel->width_px, 1, 1 << 20, where, "width_px"));
     PTIE_TRY(ptie_check_integer(panel->height_px, 1, 1 << 20, where, "height_px"));
     PTIE_TRY(ptie_check_integer(panel->colormap, PTIE_GRAY, PTIE_DIVERGING, where, "colormap"));
-    PTIE_TRY(ptie_check_finite(panel->pixel_m, where, "pixel_m"));
+    if (!isfinite(panel->pixel_m))
+        return PTIE_FAIL(PTIE_EINVAL, "%s: pixel_m is not finite (found %g)", where, panel->pixel_m);
     if (isfinite(panel->low) && isfinite(panel->high) && panel->low <= panel->high) return PTIE_OK;
     return PTIE_FAIL(PTIE_EINVAL, "%s: bad value range (expected low <= high, found %g..%g)", where,
                      panel->low, panel->high);

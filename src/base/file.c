@@ -24,6 +24,8 @@ static ptie_status may_write(const char *path, bool overwrite) {
     if (stat(path, &info) != 0) return PTIE_OK; /* absent; a bad folder shows when `part` is created */
     if (S_ISDIR(info.st_mode))
         return PTIE_FAIL(PTIE_EIO, "%s: cannot write (expected a file name, found a directory)", path);
+    if (!S_ISREG(info.st_mode)) /* a rename would replace /dev/null */
+        return PTIE_FAIL(PTIE_EIO, "%s: cannot write (expected a file name, found a device)", path);
     if (!overwrite)
         return PTIE_FAIL(PTIE_EEXIST, "%s: exists already (use -f to overwrite)", path);
     return PTIE_OK;
@@ -79,8 +81,8 @@ ptie_status ptie_output_stream(const ptie_output_file *file, FILE **out) {
 }
 
 ptie_status ptie_close_written(FILE *stream, const char *path) {
-    errno = 0;
-    int failed = ferror(stream);
+    int failed = ferror(stream); /* errno still holds the reason */
+    if (!failed) errno = 0;
     failed |= fclose(stream);
     return failed ? system_failure(path, "cannot write") : PTIE_OK;
 }

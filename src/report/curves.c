@@ -14,6 +14,7 @@
 #define HEADLINE 17.0 /* title of the figure */
 #define TITLE 14.0    /* title of one axes */
 #define BELOW 26.0    /* tick labels and label of the x axis */
+#define LARGEST 1e100 /* larger values are gaps: ranges of them would overflow */
 #define FACTOR 26.0   /* power of ten above the y axis, beside the title */
 #define MOST_TICKS 6
 #define PAD_X 0.03    /* share of the range that stays free at both ends */
@@ -36,7 +37,8 @@ typedef struct plot {
 } plot;
 
 static bool drawable(const axis *a, double value) {
-    return isfinite(value) && (!a->logarithmic || value > 0);
+    if (a->logarithmic && value < 1 / LARGEST) return false;
+    return fabs(value) <= LARGEST; /* false for NaN */
 }
 
 static double share_of(const axis *a, double value) {

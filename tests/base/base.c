@@ -179,6 +179,7 @@ static void output_appears_whole_or_not_at_all(void **state) {
     mkdir(support_temporary("folder"), 0777);
     assert_fails(ptie_read_file(&data, &bytes, support_temporary("folder"), 9), PTIE_EIO, "directory");
     assert_fails(ptie_write_file(support_temporary("folder"), "x", 1, true), PTIE_EIO, "directory");
+    assert_fails(ptie_write_file("/dev/null", "x", 1, true), PTIE_EIO, "device");
     assert_fails(ptie_write_file(support_temporary("no/such"), "x", 1, true), PTIE_EIO, "No such file");
     if (support_exists("/dev/full"))
         assert_fails(ptie_read_file(&data, &bytes, "/dev/full", 1 << 17), PTIE_EFORMAT, "too large");
