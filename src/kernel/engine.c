@@ -22,10 +22,8 @@ const ptie_kernels *ptie_kernels_of(ptie_cpu_level level) {
 ptie_status ptie_engine_start(ptie_engine *engine, int32_t threads, const char *cpu) {
     *engine = (ptie_engine){0};
     PTIE_TRY(ptie_cpu_choose(&engine->level, cpu));
+    if (!ptie_kernels_of(engine->level)) engine->level = PTIE_CPU_SCALAR; /* a build without them */
     engine->kernels = ptie_kernels_of(engine->level);
-    if (!engine->kernels)
-        return PTIE_FAIL(PTIE_ENAME, "cpu: this build has no kernels for level '%s'",
-                         ptie_cpu_name(engine->level));
     return ptie_pool_create(&engine->pool, threads);
 }
 

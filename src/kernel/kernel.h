@@ -35,6 +35,8 @@ size_t ptie_map_floats(const ptie_map *map);
 ptie_map ptie_map_in(ptie_map map, float *block);
 ptie_map ptie_map_channels(ptie_map map, int32_t first, int32_t count);
 ptie_map ptie_map_rows(ptie_map map, int32_t first, int32_t count);
+/* Zeroes the halo, for memory that was something else before. */
+void ptie_map_clear_halo(const ptie_map *map);
 /* Copies between a map and contiguous (C, H, W). */
 void ptie_map_load(const ptie_map *map, const float *image);
 void ptie_map_store(float *image, const ptie_map *map);

@@ -52,3 +52,14 @@ void ptie_map_store(float *image, const ptie_map *map) {
         for (int32_t y = 0; y < map->height; y++, image += map->width)
             memcpy(image, map->data + c * map->plane + y * map->row, (size_t)map->width * sizeof *image);
 }
+
+void ptie_map_clear_halo(const ptie_map *map) {
+    const size_t row = (size_t)map->row, width = (size_t)map->width;
+    for (int32_t c = 0; c < map->channels; c++) {
+        float *plane = map->data + c * map->plane;
+        memset(plane - row - 1, 0, (row + 1) * sizeof *plane);
+        for (int32_t y = 0; y < map->height; y++)
+            memset(plane + y * map->row + width, 0, (row - width) * sizeof *plane);
+        memset(plane + map->height * map->row, 0, row * sizeof *plane);
+    }
+}

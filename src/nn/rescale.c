@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* From rad to the network's [0, 1] and back, docs/math.md (N9).
+ *
+ * The minimum and maximum of a noisy map say nothing about the scale of the clean one, so the way back is
+ * fitted: the gain that makes the network's gradients match the measured ones.  The noise of TIE falls as 1/k^4
+ * in power: in the values it is all clouds, in the gradients it is mild, and what the network kept decides.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "base/image.h"
+#include "nn/denoiser.h"
+
+/* Sign of the third central moment; +1 for a symmetric map. */
+static float skew_sign(const float *map, size_t count) {
+    double mean = 0, third = 0;
+    for (size_t i = 0; i < count; i++) mean += (double)map[i];
+    mean /= (double)count;
+    for (size_t i = 0; i < count; i++) third += pow((double)map[i] - mean, 3);
+    return third < 0 ? -1 : 1;
+}
+
+static void find_range(const float *map, size_t count, float *low, float *high) {
+    *low = *high = map[0];
+    for (size_t i = 1; i < count; i++) {
+        if (map[i] < *low) *low = map[i];
+        if (map[i] > *high) *high = map[i];
+    }
+}
+
+/* Least squares of grad(measured) on grad(map), forward differences; 0 for a map without structure. */
+static double fit_gain(const float *map, const float *measured, int32_t width, int32_t height) {
+    double product = 0, square = 0;
+    for (int32_t y = 0; y < height; y++)
+        for (int32_t x = 0; x < width; x++) {
+            const size_t i = (size_t)y * (size_t)width + (size_t)x;
+            const size_t next[2] = {x + 1 < width ? i + 1 : i, y + 1 < height ? i + (size_t)width : i};
+            for (int axis = 0; axis < 2; axis++) {
+                double d = (double)map[next[axis]] - (double)map[i];
+                product += d * ((double)measured[next[axis]] - (double)measured[i]);
+                square += d * d;
+            }
+        }
+    return square > 0 ? product / square : 0;
+}
+
+/* Level of the flow-free background: the 15 % quantile, which is the median of the lowest 30 %, to a
+   four-thousandth of the range. */
+static float background_level(const float *map, size_t count) {
+    enum { BINS = 4096 };
+    uint32_t histogram[BINS] = {0};
+    float low, high;
+    find_range(map, count, &low, &high);
+    if (!(high > low)) return low;
+    const double bins_per_unit = BINS / ((double)high - (double)low);
+    for (size_t i = 0; i < count; i++) {
+        size_t bin = (size_t)(((double)map[i] - (double)low) * bins_per_unit);
+        histogram[bin < BINS ? bin : BINS - 1]++;
+    }
+    size_t below = 0, bin = 0;
+    while (bin < BINS - 1 && (double)(below + histogram[bin]) < 0.15 * (double)count)
+        below += histogram[bin++];
+    return (float)((double)low + ((double)bin + 0.5) / bins_per_unit);
+}
+
+ptie_status ptie_nn_denoise_rad(const ptie_denoiser *denoiser, float *clean_rad, const float *noisy_rad,
+                                int32_t polarity, void *scratch) {
+    const int32_t width = denoiser->width, height = denoiser->height;
+    const size_t count = (size_t)width * (size_t)height;
+    float *image = ptie_denoise_slice(denoiser, scratch).image;
+    float low, high;
+    PTIE_TRY(ptie_image_finite(noisy_rad, width, height, "noisy_rad"));
+    const float sign = polarity ? (float)polarity : skew_sign(noisy_rad, count);
+    find_range(noisy_rad, count, &low, &high);
+    if (!(high > low)) { /* nothing to see */
+        memset(clean_rad, 0, count * sizeof *clean_rad);
+        return PTIE_OK;
+    }
+    const float lowest = sign > 0 ? low : -high, range = high - low;
+    for (size_t i = 0; i < count; i++) image[i] = (sign * noisy_rad[i] - lowest) / range;
+    /* The result may take the place of the input, so the measured map is kept as the network sees it. */
+    PTIE_TRY(ptie_nn_denoise(denoiser, clean_rad, image, scratch));
+    const double gain = fit_gain(clean_rad, image, width, height);
+    const float background = background_level(clean_rad, count);
+    const float scale = (float)(gain * (double)(sign * range));
+    for (size_t i = 0; i < count; i++) clean_rad[i] = scale * (clean_rad[i] - background);
+    return PTIE_OK;
+}
