@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The vocabulary the vector kernels are written in, once for all instruction sets.  The build compiles every
+ * file of this folder per level with PTIE_VEC_WIDTH (floats per register) and PTIE_VEC_LEVEL (suffix of the
+ * symbols); GCC's and Clang's vector extension does the rest.  a * b + c is fused here (-ffp-contract=fast).
+ */
+#ifndef PTIE_KERNEL_VEC_H
+#define PTIE_KERNEL_VEC_H
+
+#include "kernel/kernel.h"
+
+#define PTIE_VEC_PASTE_(name, level) ptie_##name##_##level
+#define PTIE_VEC_PASTE(name, level) PTIE_VEC_PASTE_(name, level)
+#define VEC(name) PTIE_VEC_PASTE(name, PTIE_VEC_LEVEL)
+
+#define PTIE_KERNEL(name, parameters) void VEC(name) parameters;
+#include "kernel/kernels.inc"
+#undef PTIE_KERNEL
+
+enum { VEC_WIDTH = PTIE_VEC_WIDTH };
+
+#define INLINE static inline __attribute__((always_inline))
+#ifdef __clang__
+#define UNROLL _Pragma("clang loop unroll(full)")
+#else
+#define UNROLL _Pragma("GCC unroll 32")
+#endif
+
+typedef float vf __attribute__((vector_size(4 * PTIE_VEC_WIDTH)));
+typedef int32_t vi __attribute__((vector_size(4 * PTIE_VEC_WIDTH)));
+typedef float vf_anywhere __attribute__((vector_size(4 * PTIE_VEC_WIDTH), aligned(4), may_alias));
+
+INLINE vf vf_load(const float *from) {
+    return *(const vf_anywhere *)(const void *)from;
+}
+
+INLINE void vf_store(float *to, vf value) {
+    *(vf_anywhere *)(void *)to = value;
+}
+
+/* The first `count` lanes; at most VEC_WIDTH are stored. */
+INLINE void vf_store_first(float *to, vf value, int32_t count) {
+    if (count >= VEC_WIDTH) {
+        vf_store(to, value);
+        return;
+    }
+    for (int32_t i = 0; i < count; i++) to[i] = value[i];
+}
+
+INLINE vf vf_splat(float value) {
+    return (vf){0} + value;
+}
+
+/* Bitwise choice: mask lanes are all ones or all zeros. */
+INLINE vf vf_select(vi mask, vf yes, vf no) {
+    return (vf)((mask & (vi)yes) | (~mask & (vi)no));
+}
+
+INLINE vf vf_max(vf a, vf b) {
+    return vf_select(a > b, a, b);
+}
+
+INLINE vf vf_positive(vf a) {
+    return (vf)((a > 0) & (vi)a);
+}
+
+/* Lanes first .. of an array of `count` floats that exist; the others 0. */
+INLINE vf vf_first(vf value, int32_t count) {
+    vi lane;
+    UNROLL for (int i = 0; i < VEC_WIDTH; i++) lane[i] = i;
+    return (vf)((lane < count) & (vi)value);
+}
+
+INLINE double vf_sum(vf value) {
+    double sum = 0;
+    UNROLL for (int i = 0; i < VEC_WIDTH; i++) sum += (double)value[i];
+    return sum;
+}
+
+/* Even and odd elements of the 2 * VEC_WIDTH floats (a, b), and back. */
+#if PTIE_VEC_WIDTH == 16
+#define VEC_EVEN 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30
+#define VEC_ODD 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31
+#define VEC_LOW 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23
+#define VEC_HIGH 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31
+#elif PTIE_VEC_WIDTH == 8
+#define VEC_EVEN 0, 2, 4, 6, 8, 10, 12, 14
+#define VEC_ODD 1, 3, 5, 7, 9, 11, 13, 15
+#define VEC_LOW 0, 8, 1, 9, 2, 10, 3, 11
+#define VEC_HIGH 4, 12, 5, 13, 6, 14, 7, 15
+#endif
+
+INLINE vf vf_even(vf a, vf b) {
+    return __builtin_shufflevector(a, b, VEC_EVEN);
+}
+INLINE vf vf_odd(vf a, vf b) {
+    return __builtin_shufflevector(a, b, VEC_ODD);
+}
+INLINE vf vf_interleave_low(vf even, vf odd) {
+    return __builtin_shufflevector(even, odd, VEC_LOW);
+}
+INLINE vf vf_interleave_high(vf even, vf odd) {
+    return __builtin_shufflevector(even, odd, VEC_HIGH);
+}
+
+INLINE float *row_of(const ptie_map *map, int32_t c, int32_t y) {
+    return map->data + c * map->plane + y * map->row;
+}
+
+INLINE int32_t smaller(int32_t a, int32_t b) {
+    return a < b ? a : b;
+}
+
+#endif
