@@ -3,7 +3,8 @@
  *
  * A sample is one pair: clean phase, and the phase that the optics, the noise and the inverse Laplacian
  * make of it.  Both are min-max normalised to [0, 1] as in the paper; what was subtracted and divided
- * stays with the sample, so that rad = offset + scale * value.
+ * stays with the sample, so that rad = offset + scale * value.  Zero of the clean phase is the undisturbed
+ * gas (parametric family: the shapes' own 0); the noisy phase has zero mean, because its mean is not measured.
  */
 #ifndef PTIE_DATASET_H
 #define PTIE_DATASET_H
@@ -42,8 +43,9 @@ PTIE_API PTIE_NODISCARD ptie_status ptie_preset_sample(const ptie_preset *preset
                                                        ptie_sample_info *info);
 
 /* Draws samples 0..count-1 on the context's threads and writes an HDF5 file: /clean and /noisy
-   [N, H, W] float32, one dataset per field of ptie_sample_info [N], attributes preset (text), seed,
-   count, version, split.  The bytes do not depend on the thread count.  The file appears under `path`
+   [N, H, W] float32, one dataset per field of ptie_sample_info [N], attributes preset (text), seed
+   (at most 2^63 - 1), count, version, split ("train 0:800", ...).  The bytes do not depend on the thread
+   count; memory does not depend on count.  The file appears under `path`
    only when complete.  Errors: PTIE_EINVAL, PTIE_EEXIST, PTIE_EIO, PTIE_ENOMEM, PTIE_ECANCELLED. */
 PTIE_API PTIE_NODISCARD ptie_status ptie_dataset_write(ptie_ctx *ctx, const char *path,
                                                        const ptie_preset *preset, uint64_t seed,
@@ -63,7 +65,8 @@ PTIE_API PTIE_NODISCARD ptie_status ptie_dataset_from_preset(ptie_dataset **out,
                                                              uint64_t count);
 PTIE_API void ptie_dataset_free(ptie_dataset *dataset); /* NULL is fine */
 PTIE_API void ptie_dataset_size(const ptie_dataset *dataset, int32_t *width_px, int32_t *height_px);
-/* Number of samples in a split: 80/10/10 by index, in this order; for 25,000: 20,000/2,500/2,500. */
+/* Number of samples in a split, by index in this order: validation and test get a tenth each, rounded down but
+   at least 1 (0 below 3 samples), training the rest.  For 25,000: 20,000/2,500/2,500. */
 PTIE_API uint64_t ptie_dataset_count(const ptie_dataset *dataset, ptie_split split);
 /* Reads sample `index` (0..count-1) of a split.  Thread-safe (file access is serialised). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_dataset_read(const ptie_dataset *dataset, ptie_split split,

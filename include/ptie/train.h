@@ -28,7 +28,7 @@ typedef struct ptie_train_params {
 PTIE_API void ptie_train_params_init(ptie_train_params *params);
 
 typedef struct ptie_scores {
-    double loss, psnr_db, mae, ssim; /* means over samples, PSNR with MAX = 1 */
+    double loss, psnr_db, mae, ssim; /* means over samples of each sample's score; PSNR with MAX = 1 */
     uint64_t samples;
 } ptie_scores;
 
@@ -36,31 +36,41 @@ typedef struct ptie_scores {
      <path>               best model by validation loss (safetensors)
      <path>.last          complete state for resume
      <path>.history.csv and .history.json   one row per epoch
-   all atomically.  progress: one unit per sample, with a note per epoch and per second.
+   all atomically.  Afterwards `model` holds the last step's weights; load `path` for the best.
+   progress: one unit per training sample, reported after each step with a note.
    The same bits for any number of threads, and 20 steps = 10 + resume + 10.
-   On PTIE_ECANCELLED and at a limit `<path>.last` holds the last finished step.
-   Errors: PTIE_EINVAL, PTIE_ESIZE (data and model), PTIE_EEXIST, PTIE_EIO, PTIE_EFORMAT (resume),
-   PTIE_ENUMERIC (loss not finite), PTIE_ENOMEM, PTIE_ECANCELLED. */
+   On PTIE_ECANCELLED and at a limit `<path>.last` holds the last finished step; an epoch whose last step
+   is done is validated before a limit stops the run.
+   Resuming takes the parameters of the run that is continued, except patience, limits and
+   checkpoint_steps, which may change.
+   Errors: PTIE_EINVAL (also resume with other parameters or data), PTIE_ESIZE (data and model),
+   PTIE_EEXIST, PTIE_EIO, PTIE_EFORMAT (resume), PTIE_ENUMERIC (loss not finite), PTIE_ENOMEM,
+   PTIE_ECANCELLED. */
 PTIE_API PTIE_NODISCARD ptie_status ptie_train(ptie_ctx *ctx, ptie_model *model,
                                                const ptie_dataset *dataset, const char *path,
                                                const ptie_train_params *params,
                                                ptie_progress progress);
 
 /* Scores a split: `noisy` for the input itself, `denoised` for the model's output.  model NULL: only
-   `noisy` is filled.  Uses the loss weights of `params` (NULL: defaults). */
+   `noisy` is filled; either may be NULL.  Uses the loss weights of `params` (NULL: defaults).
+   progress: one unit per sample.
+   Errors: PTIE_EINVAL (also an empty split), PTIE_ESIZE (maps below 11 x 11; a model with other inputs),
+   PTIE_EIO, PTIE_ENOMEM, PTIE_ECANCELLED. */
 PTIE_API PTIE_NODISCARD ptie_status ptie_evaluate(ptie_ctx *ctx, const ptie_model *model,
                                                   const ptie_dataset *dataset, ptie_split split,
                                                   const ptie_train_params *params, ptie_scores *noisy,
                                                   ptie_scores *denoised, ptie_progress progress);
 
-/* One epoch of a history file. */
+/* One epoch of a history file.  `train` are means over the epoch as it went: with dropout, and with weights that
+   changed meanwhile (as Keras reports them). */
 typedef struct ptie_epoch {
     int32_t epoch; /* from 1 */
-    double learning_rate, seconds;
+    double learning_rate, seconds; /* of the epoch's last step; validation included */
     ptie_scores train, validation;
 } ptie_epoch;
 
-/* Reads <path>.history.csv.  *epochs is malloc'ed; free with ptie_history_free. */
+/* Reads <path>.history.csv, `path` being the model's.  Free *epochs with ptie_history_free.
+   Errors: PTIE_EIO, PTIE_EFORMAT (line), PTIE_ENOMEM. */
 PTIE_API PTIE_NODISCARD ptie_status ptie_history_read(ptie_epoch **epochs, size_t *count,
                                                       const char *path);
 PTIE_API void ptie_history_free(ptie_epoch *epochs);

@@ -15,8 +15,8 @@ ptie_status ptie_preset_load(ptie_preset **out, const char *name) {
     return ptie_preset_read(out, name);
 }
 
-ptie_status ptie_preset_sample(const ptie_preset *preset, uint64_t seed, uint64_t index, float *clean,
-                               float *noisy, ptie_sample_info *info) {
+ptie_status ptie_preset_sample(const ptie_preset *preset, uint64_t seed, uint64_t index,
+                               float *clean, float *noisy, ptie_sample_info *info) {
     static const char where[] = "ptie_preset_sample";
     PTIE_TRY(ptie_check_pointer(preset, where, "preset"));
     PTIE_TRY(ptie_check_pointer(clean, where, "clean"));
@@ -25,7 +25,8 @@ ptie_status ptie_preset_sample(const ptie_preset *preset, uint64_t seed, uint64_
     void *scratch = NULL;
     PTIE_TRY(ptie_sampler_create(&sampler, preset));
     ptie_status status = ptie_alloc_status(&scratch, ptie_sampler_scratch(sampler), 1, where);
-    if (status == PTIE_OK) status = ptie_sampler_draw(sampler, seed, index, clean, noisy, info, scratch);
+    if (status == PTIE_OK)
+        status = ptie_sampler_draw(sampler, seed, index, clean, noisy, info, scratch);
     ptie_free(scratch);
     ptie_sampler_free(sampler);
     return status;
@@ -34,16 +35,18 @@ ptie_status ptie_preset_sample(const ptie_preset *preset, uint64_t seed, uint64_
 /* Both are attributes of the file, which are signed. */
 static ptie_status check_draw(uint64_t seed, uint64_t count, const char *where) {
     if (seed > INT64_MAX)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: seed is out of range (expected at most 2^63 - 1, found %llu)", where,
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "%s: seed is out of range (expected at most 2^63 - 1, found %llu)", where,
                          (unsigned long long)seed);
     if (count < 1 || count > INT32_MAX)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: count is out of range (expected 1..%d, found %llu)", where,
-                         INT32_MAX, (unsigned long long)count);
+        return PTIE_FAIL(PTIE_EINVAL, "%s: count is out of range (expected 1..%d, found %llu)",
+                         where, INT32_MAX, (unsigned long long)count);
     return PTIE_OK;
 }
 
-ptie_status ptie_dataset_write(ptie_ctx *ctx, const char *path, const ptie_preset *preset, uint64_t seed,
-                               uint64_t count, bool overwrite, ptie_progress progress) {
+ptie_status ptie_dataset_write(ptie_ctx *ctx, const char *path, const ptie_preset *preset,
+                               uint64_t seed, uint64_t count, bool overwrite,
+                               ptie_progress progress) {
     static const char where[] = "ptie_dataset_write";
     PTIE_TRY(ptie_check_pointer(ctx, where, "ctx"));
     PTIE_TRY(ptie_check_pointer(path, where, "path"));
@@ -70,8 +73,8 @@ ptie_status ptie_dataset_from_preset(ptie_dataset **out, const ptie_preset *pres
     return ptie_dataset_draw(out, preset, seed, count);
 }
 
-ptie_status ptie_dataset_read(const ptie_dataset *dataset, ptie_split split, uint64_t index, float *clean,
-                              float *noisy, ptie_sample_info *info) {
+ptie_status ptie_dataset_read(const ptie_dataset *dataset, ptie_split split, uint64_t index,
+                              float *clean, float *noisy, ptie_sample_info *info) {
     static const char where[] = "ptie_dataset_read";
     PTIE_TRY(ptie_check_pointer(dataset, where, "dataset"));
     PTIE_TRY(ptie_check_pointer(clean, where, "clean"));
@@ -79,8 +82,8 @@ ptie_status ptie_dataset_read(const ptie_dataset *dataset, ptie_split split, uin
     PTIE_TRY(ptie_check_integer(split, PTIE_TRAIN, PTIE_ALL, where, "split"));
     const uint64_t count = ptie_dataset_count(dataset, split);
     if (index >= count)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: index is out of range (expected below %llu, found %llu)", where,
-                         (unsigned long long)count, (unsigned long long)index);
+        return PTIE_FAIL(PTIE_EINVAL, "%s: index is out of range (expected below %llu, found %llu)",
+                         where, (unsigned long long)count, (unsigned long long)index);
     void *scratch;
     PTIE_TRY(ptie_alloc_status(&scratch, ptie_dataset_scratch(dataset), 1, where));
     ptie_status status = ptie_dataset_fetch(dataset, split, index, clean, noisy, info, scratch);

@@ -31,8 +31,8 @@ static ptie_status check_params(const ptie_train_params *p, const char *where) {
     return check_weights(p, where);
 }
 
-ptie_status ptie_train(ptie_ctx *ctx, ptie_model *model, const ptie_dataset *dataset, const char *path,
-                       const ptie_train_params *params, ptie_progress progress) {
+ptie_status ptie_train(ptie_ctx *ctx, ptie_model *model, const ptie_dataset *dataset,
+                       const char *path, const ptie_train_params *params, ptie_progress progress) {
     static const char where[] = "ptie_train";
     PTIE_TRY(ptie_check_pointer(ctx, where, "ctx"));
     PTIE_TRY(ptie_check_pointer(model, where, "model"));
@@ -57,7 +57,8 @@ ptie_status ptie_evaluate(ptie_ctx *ctx, const ptie_model *model, const ptie_dat
     if (params) PTIE_TRY(ptie_params_read(&known, sizeof known, params, where));
     PTIE_TRY(check_weights(&known, where));
     const ptie_loss_weights weights = {.l1 = known.w_l1, .ssim = known.w_ssim, .mse = known.w_mse};
-    return ptie_score_split(&ctx->engine, model, dataset, split, weights, noisy, denoised, progress);
+    return ptie_score_split(&ctx->engine, model, dataset, split, weights, noisy, denoised,
+                            progress);
 }
 
 ptie_status ptie_history_read(ptie_epoch **epochs, size_t *count, const char *path) {

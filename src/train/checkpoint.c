@@ -21,7 +21,8 @@ ptie_status ptie_checkpoint_describe(ptie_trainer *t) {
     ptie_text *text = &t->settings;
     for (size_t i = 0; i < PTIE_MODEL_FACTS; i++)
         ptie_text_append(text, "%s = %s\n", t->model->facts[i].key, t->model->facts[i].value);
-    ptie_text_append(text, "epochs = %d\nbatch = %d\nlearning_rate = %.17g\nwarmup_epochs = %.17g\n",
+    ptie_text_append(text,
+                     "epochs = %d\nbatch = %d\nlearning_rate = %.17g\nwarmup_epochs = %.17g\n",
                      p->epochs, p->batch, p->learning_rate, p->warmup_epochs);
     ptie_text_append(text, "weight_decay = %.17g\nbeta1 = %.17g\nbeta2 = %.17g\nepsilon = %.17g\n",
                      p->weight_decay, p->beta1, p->beta2, p->epsilon);
@@ -85,16 +86,19 @@ static ptie_status collect(contents *c, const ptie_trainer *t) {
     PTIE_TRY(ptie_alloc_status(&c->names, most_tensors, sizeof *c->names, "checkpoint"));
     PTIE_TRY(ptie_alloc_status(&c->notes, most_notes, sizeof *c->notes, "checkpoint"));
 
-    for (size_t i = 0; i < c->model_tensor_count; i++) c->tensors[c->tensor_count++] = c->model_tensors[i];
+    for (size_t i = 0; i < c->model_tensor_count; i++)
+        c->tensors[c->tensor_count++] = c->model_tensors[i];
     for (size_t i = 0; i < c->model_tensor_count; i++) add_moments(c, t, &c->model_tensors[i]);
 
     const ptie_scores *sums = &t->sums;
-    ptie_text_append(&c->position, "%llu %llu %.17g %.17g %.17g %.17g %.17g", (unsigned long long)t->step,
-                     (unsigned long long)sums->samples, sums->loss, sums->psnr_db, sums->mae, sums->ssim,
-                     t->seconds);
+    ptie_text_append(&c->position, "%llu %llu %.17g %.17g %.17g %.17g %.17g",
+                     (unsigned long long)t->step, (unsigned long long)sums->samples, sums->loss,
+                     sums->psnr_db, sums->mae, sums->ssim, t->seconds);
     ptie_history_print(&c->history, t->epochs, t->epoch_count);
-    if (c->position.failed || c->history.failed) return PTIE_FAIL(PTIE_ENOMEM, "checkpoint: out of memory");
-    for (size_t i = 0; i < c->model_note_count; i++) /* a model loaded from a checkpoint brings old ones */
+    if (c->position.failed || c->history.failed)
+        return PTIE_FAIL(PTIE_ENOMEM, "checkpoint: out of memory");
+    for (size_t i = 0; i < c->model_note_count;
+         i++) /* a model loaded from a checkpoint brings old ones */
         if (strncmp(c->model_notes[i].key, NOTE_PREFIX, sizeof NOTE_PREFIX - 1) != 0)
             c->notes[c->note_count++] = c->model_notes[i];
     add_note(c, NOTE_SETTINGS, t->settings.data);
@@ -107,8 +111,8 @@ ptie_status ptie_checkpoint_save(const ptie_trainer *t) {
     contents c = {0};
     ptie_status status = collect(&c, t);
     if (status == PTIE_OK)
-        status = ptie_safetensors_write(t->last_path.data, c.tensors, c.tensor_count, c.notes, c.note_count,
-                                        true);
+        status = ptie_safetensors_write(t->last_path.data, c.tensors, c.tensor_count, c.notes,
+                                        c.note_count, true);
     free_contents(&c);
     return status;
 }
@@ -119,16 +123,17 @@ static ptie_status compare_settings(const char *own, const char *saved, const ch
     size_t line = 0;
     for (size_t i = 0; own[i] == saved[i]; i++)
         if (own[i] == '\n') line = i + 1;
-    return PTIE_FAIL(PTIE_EINVAL, "%s: cannot resume with other settings (expected '%.*s', found '%.*s')",
-                     where, (int)strcspn(saved + line, "\n"), saved + line,
-                     (int)strcspn(own + line, "\n"), own + line);
+    return PTIE_FAIL(
+        PTIE_EINVAL, "%s: cannot resume with other settings (expected '%.*s', found '%.*s')", where,
+        (int)strcspn(saved + line, "\n"), saved + line, (int)strcspn(own + line, "\n"), own + line);
 }
 
 static ptie_status find_note(const char **value, const ptie_safetensors *file, const char *key,
                              const char *where) {
     *value = ptie_safetensors_note(file, key);
     if (*value) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EFORMAT, "%s: not a training checkpoint (expected the note %s, found none)", where,
+    return PTIE_FAIL(PTIE_EFORMAT,
+                     "%s: not a training checkpoint (expected the note %s, found none)", where,
                      key);
 }
 
@@ -146,7 +151,8 @@ static ptie_status restore_moment(ptie_trainer *t, const ptie_safetensors *file,
     size_t count, found = 1;
     float *moment = ptie_stepper_state(t->stepper, which, tensor->name, &count);
     if (!moment) return PTIE_OK;
-    const ptie_tensor_view *saved = ptie_safetensors_find(file, moment_name(name, which, tensor->name));
+    const ptie_tensor_view *saved =
+        ptie_safetensors_find(file, moment_name(name, which, tensor->name));
     for (int32_t i = 0; saved && i < saved->rank; i++) found *= (size_t)saved->shape[i];
     if (!saved || found != count)
         return PTIE_FAIL(PTIE_EFORMAT, "%s: %s: missing or of another size (expected %zu numbers)",
@@ -185,9 +191,10 @@ static ptie_status restore_position(ptie_trainer *t, const ptie_safetensors *fil
 
     unsigned long long step, samples;
     ptie_scores *sums = &t->sums;
-    if (sscanf(position, "%llu %llu %lg %lg %lg %lg %lg", &step, &samples, &sums->loss, &sums->psnr_db,
-               &sums->mae, &sums->ssim, &t->seconds) != 7)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: %s: damaged (expected 7 numbers)", where, NOTE_POSITION);
+    if (sscanf(position, "%llu %llu %lg %lg %lg %lg %lg", &step, &samples, &sums->loss,
+               &sums->psnr_db, &sums->mae, &sums->ssim, &t->seconds) != 7)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: %s: damaged (expected 7 numbers)", where,
+                         NOTE_POSITION);
     t->step = step;
     sums->samples = samples;
 
@@ -197,7 +204,8 @@ static ptie_status restore_position(ptie_trainer *t, const ptie_safetensors *fil
     if (possible) memcpy(t->epochs, epochs, t->epoch_count * sizeof *epochs);
     ptie_history_free(epochs);
     if (possible) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EFORMAT, "%s: %s: step %llu does not fit the history", where, NOTE_POSITION, step);
+    return PTIE_FAIL(PTIE_EFORMAT, "%s: %s: step %llu does not fit the history", where,
+                     NOTE_POSITION, step);
 }
 
 static ptie_status restore_from(ptie_trainer *t, const ptie_safetensors *file) {

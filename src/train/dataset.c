@@ -87,9 +87,11 @@ static ptie_status read_shape(ptie_dataset *dataset, const char *path) {
     uint64_t dims[4];
     PTIE_TRY(ptie_h5_shape(dataset->file->h5, "/clean", &rank, dims));
     if (rank != 3)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: /clean: expected 3 dimensions [N, H, W], found %d", path, rank);
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: /clean: expected 3 dimensions [N, H, W], found %d",
+                         path, rank);
     if (dims[0] < 1 || dims[1] < 1 || dims[1] > MAX_SIDE || dims[2] < 1 || dims[2] > MAX_SIDE)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: /clean: expected maps of 1..%d pixels, found [%llu, %llu, %llu]",
+        return PTIE_FAIL(PTIE_EFORMAT,
+                         "%s: /clean: expected maps of 1..%d pixels, found [%llu, %llu, %llu]",
                          path, MAX_SIDE, (unsigned long long)dims[0], (unsigned long long)dims[1],
                          (unsigned long long)dims[2]);
     dataset->count = dims[0];
@@ -108,7 +110,8 @@ static ptie_status expect_shape(const ptie_dataset *dataset, const char *path, c
     bool same = rank == expected_rank;
     for (int32_t i = 0; same && i < rank; i++) same = dims[i] == expected[i];
     if (same) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EFORMAT, "%s: %s: shape does not fit /clean (expected %d dimensions, %llu samples)",
+    return PTIE_FAIL(PTIE_EFORMAT,
+                     "%s: %s: shape does not fit /clean (expected %d dimensions, %llu samples)",
                      path, name, expected_rank, (unsigned long long)dataset->count);
 }
 
@@ -118,7 +121,8 @@ static ptie_status read_attributes(ptie_dataset *dataset, const char *path) {
     PTIE_TRY(ptie_h5_get_integer(dataset->file->h5, "/", "seed", &seed));
     PTIE_TRY(ptie_h5_get_integer(dataset->file->h5, "/", "count", &count));
     if (count < 0 || (uint64_t)count != dataset->count)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: attribute count does not fit /clean (expected %llu, found %lld)",
+        return PTIE_FAIL(PTIE_EFORMAT,
+                         "%s: attribute count does not fit /clean (expected %llu, found %lld)",
                          path, (unsigned long long)dataset->count, (long long)count);
     dataset->seed = (uint64_t)seed;
     return PTIE_OK;
@@ -164,7 +168,8 @@ static ptie_status read_row(ptie_h5 *h5, uint64_t row, float *clean, float *nois
     PTIE_TRY(ptie_h5_read(h5, "/noisy", PTIE_H5_F32, row, 1, noisy));
     for (int i = 0; info && i < PTIE_INFO_COLUMNS; i++) {
         const ptie_info_column *column = &ptie_info_columns[i];
-        PTIE_TRY(ptie_h5_read(h5, column->path, column->type, row, 1, (char *)info + column->offset));
+        PTIE_TRY(
+            ptie_h5_read(h5, column->path, column->type, row, 1, (char *)info + column->offset));
     }
     return PTIE_OK;
 }
@@ -175,7 +180,8 @@ ptie_status ptie_dataset_fetch(const ptie_dataset *dataset, ptie_split split, ui
     const uint64_t sample = span.first + index;
     assert(index < span.count);
     if (dataset->sampler)
-        return ptie_sampler_draw(dataset->sampler, dataset->seed, sample, clean, noisy, info, scratch);
+        return ptie_sampler_draw(dataset->sampler, dataset->seed, sample, clean, noisy, info,
+                                 scratch);
     pthread_mutex_lock(&dataset->file->lock);
     ptie_status status = read_row(dataset->file->h5, sample, clean, noisy, info);
     pthread_mutex_unlock(&dataset->file->lock);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Writes data set files: samples are drawn in blocks on the pool, and each block is written in order. */
+/* Writes data set files: samples are drawn in blocks on the pool, and each block is written in
+ * order. */
 #include <stdio.h>
 #include <string.h>
 
@@ -8,7 +9,8 @@
 #include "base/memory.h"
 #include "train/dataset.h"
 
-/* Samples per block at 256 x 256; larger maps make smaller blocks, so that memory stays constant. */
+/* Samples per block at 256 x 256; larger maps make smaller blocks, so that memory stays constant.
+ */
 #define BLOCK_SAMPLES 64
 #define BLOCK_BYTES ((size_t)32 << 20)
 
@@ -71,8 +73,8 @@ static ptie_status write_split(ptie_h5 *h5, uint64_t count) {
     const char *values[3] = {texts[0], texts[1], texts[2]};
     for (int i = 0; i < 3; i++) {
         const ptie_span span = ptie_split_span(count, (ptie_split)i);
-        snprintf(texts[i], sizeof texts[i], "%s %llu:%llu", names[i], (unsigned long long)span.first,
-                 (unsigned long long)(span.first + span.count));
+        snprintf(texts[i], sizeof texts[i], "%s %llu:%llu", names[i],
+                 (unsigned long long)span.first, (unsigned long long)(span.first + span.count));
     }
     return ptie_h5_set_texts(h5, "/", "split", values, 3);
 }
@@ -82,7 +84,8 @@ static ptie_status describe(ptie_h5 *h5, const ptie_preset *preset, uint64_t see
     PTIE_TRY(ptie_h5_dataset(h5, "/clean", PTIE_H5_F32, 3, dims, 0));
     PTIE_TRY(ptie_h5_dataset(h5, "/noisy", PTIE_H5_F32, 3, dims, 0));
     for (int c = 0; c < PTIE_INFO_COLUMNS; c++)
-        PTIE_TRY(ptie_h5_dataset(h5, ptie_info_columns[c].path, ptie_info_columns[c].type, 1, dims, 0));
+        PTIE_TRY(
+            ptie_h5_dataset(h5, ptie_info_columns[c].path, ptie_info_columns[c].type, 1, dims, 0));
     PTIE_TRY(ptie_h5_set_text(h5, "/", "preset", preset->text));
     PTIE_TRY(ptie_h5_set_text(h5, "/", "version", ptie_version()));
     PTIE_TRY(ptie_h5_set_integer(h5, "/", "seed", (int64_t)seed));

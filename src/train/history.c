@@ -58,7 +58,8 @@ void ptie_history_print(ptie_text *csv, const ptie_epoch *epochs, size_t count) 
         ptie_text_append(csv, "%d", epochs[e].epoch);
         for (int i = 0; i < COLUMNS; i++)
             if (columns[i].is_count)
-                ptie_text_append(csv, ",%llu", (unsigned long long)get_count(&epochs[e], &columns[i]));
+                ptie_text_append(csv, ",%llu",
+                                 (unsigned long long)get_count(&epochs[e], &columns[i]));
             else
                 ptie_text_append(csv, ",%.17g", get_number(&epochs[e], &columns[i]));
         ptie_text_append(csv, "\n");
@@ -98,7 +99,8 @@ static size_t count_lines(const char *text) {
     return lines;
 }
 
-ptie_status ptie_history_parse(ptie_epoch **epochs, size_t *count, const char *csv, const char *where) {
+ptie_status ptie_history_parse(ptie_epoch **epochs, size_t *count, const char *csv,
+                               const char *where) {
     *epochs = NULL;
     *count = 0;
     ptie_text header = {0};
@@ -106,16 +108,19 @@ ptie_status ptie_history_parse(ptie_epoch **epochs, size_t *count, const char *c
     const size_t length = header.length, lines = count_lines(csv);
     const bool known = !header.failed && strncmp(csv, header.data, length) == 0;
     ptie_text_free(&header);
-    if (!known) return PTIE_FAIL(PTIE_EFORMAT, "%s:1: not a training history (unknown columns)", where);
+    if (!known)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s:1: not a training history (unknown columns)", where);
 
-    ptie_epoch *rows = calloc(lines, sizeof *rows); /* the header's line makes room for a last half row */
+    ptie_epoch *rows =
+        calloc(lines, sizeof *rows); /* the header's line makes room for a last half row */
     if (!rows) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", where);
     const char *text = csv + length;
     size_t n = 0;
     for (; *text; n++)
         if (!parse_row(&text, &rows[n]) || rows[n].epoch != (int32_t)n + 1) {
             free(rows);
-            return PTIE_FAIL(PTIE_EFORMAT, "%s:%zu: damaged row (expected epoch %zu and %d numbers)", where,
+            return PTIE_FAIL(PTIE_EFORMAT,
+                             "%s:%zu: damaged row (expected epoch %zu and %d numbers)", where,
                              n + 2, n + 1, COLUMNS);
         }
     *epochs = rows;
@@ -131,8 +136,9 @@ static char *side_path(const char *path, const char *suffix, ptie_text *text) {
 static ptie_status write_text(const char *path, const char *suffix, const char *data) {
     ptie_text name = {0};
     const bool named = side_path(path, suffix, &name);
-    ptie_status status = named && data ? ptie_write_file(name.data, data, strlen(data), true)
-                                       : PTIE_FAIL(PTIE_ENOMEM, "%s%s: out of memory", path, suffix);
+    ptie_status status = named && data
+                             ? ptie_write_file(name.data, data, strlen(data), true)
+                             : PTIE_FAIL(PTIE_ENOMEM, "%s%s: out of memory", path, suffix);
     ptie_text_free(&name);
     return status;
 }

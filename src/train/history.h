@@ -9,8 +9,10 @@
 
 /* Appends the rows as CSV with a header line. */
 void ptie_history_print(ptie_text *csv, const ptie_epoch *epochs, size_t count);
-/* Reads what ptie_history_print wrote; *epochs is malloc'ed.  `where` names the text in messages. */
-ptie_status ptie_history_parse(ptie_epoch **epochs, size_t *count, const char *csv, const char *where);
+/* Reads what ptie_history_print wrote; *epochs is malloc'ed.  `where` names the text in messages.
+ */
+ptie_status ptie_history_parse(ptie_epoch **epochs, size_t *count, const char *csv,
+                               const char *where);
 
 /* Rewrites <path>.history.csv and <path>.history.json. */
 ptie_status ptie_history_write(const char *path, const ptie_epoch *epochs, size_t count);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The training loop.  An epoch takes every sample once; the last batch takes what is left, and counts as a
- * step (as Keras does).  Training scores are means over the samples as they were seen, with dropout. */
+/* The training loop.  An epoch takes every sample once; the last batch takes what is left, and
+ * counts as a step (as Keras does).  Training scores are means over the samples as they were seen,
+ * with dropout. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -52,7 +53,8 @@ static ptie_status report(const ptie_trainer *t, const char *note) {
 static ptie_status load_sample(void *context, size_t i, int32_t worker) {
     ptie_trainer *t = context;
     const uint64_t index = t->order[t->sums.samples + i];
-    return ptie_dataset_fetch(t->dataset, PTIE_TRAIN, index, ptie_stepper_clean(t->stepper, (int32_t)i),
+    return ptie_dataset_fetch(t->dataset, PTIE_TRAIN, index,
+                              ptie_stepper_clean(t->stepper, (int32_t)i),
                               ptie_stepper_noisy(t->stepper, (int32_t)i), NULL,
                               t->scratch + (size_t)worker * t->scratch_bytes);
 }
@@ -69,10 +71,11 @@ static ptie_status load_batch(ptie_trainer *t, int32_t *count) {
 
 static ptie_status expect_finite(double loss, const ptie_trainer *t, const char *what) {
     if (isfinite(loss)) return PTIE_OK;
-    return PTIE_FAIL(PTIE_ENUMERIC,
-                     "training: %s is not finite at step %llu (expected a number, found %g; try a smaller "
-                     "learning rate)",
-                     what, (unsigned long long)t->step + 1, loss);
+    return PTIE_FAIL(
+        PTIE_ENUMERIC,
+        "training: %s is not finite at step %llu (expected a number, found %g; try a smaller "
+        "learning rate)",
+        what, (unsigned long long)t->step + 1, loss);
 }
 
 static ptie_status optimise(ptie_trainer *t, int32_t count) {
@@ -112,8 +115,8 @@ static int report_validation(void *user, uint64_t done, uint64_t total, const ch
     const ptie_trainer *t = user;
     char line[128];
     (void)note;
-    snprintf(line, sizeof line, "epoch %zu/%d validation %llu/%llu", t->epoch_count + 1, t->params->epochs,
-             (unsigned long long)done, (unsigned long long)total);
+    snprintf(line, sizeof line, "epoch %zu/%d validation %llu/%llu", t->epoch_count + 1,
+             t->params->epochs, (unsigned long long)done, (unsigned long long)total);
     return report(t, line) != PTIE_OK;
 }
 
@@ -123,8 +126,8 @@ static ptie_loss_weights loss_weights(const ptie_train_params *params) {
 
 static ptie_status validate(ptie_trainer *t, ptie_scores *scores) {
     const ptie_progress progress = {t->progress.report ? report_validation : NULL, t};
-    PTIE_TRY(ptie_score_split(t->engine, t->model, t->dataset, PTIE_VALIDATION, loss_weights(t->params),
-                              NULL, scores, progress));
+    PTIE_TRY(ptie_score_split(t->engine, t->model, t->dataset, PTIE_VALIDATION,
+                              loss_weights(t->params), NULL, scores, progress));
     return expect_finite(scores->loss, t, "the validation loss");
 }
 
@@ -149,7 +152,8 @@ static ptie_status save_best(ptie_trainer *t) {
     return ptie_nn_save(t->model, t->path, true);
 }
 
-/* The checkpoint comes last: killed before it, the run repeats the epoch's end to the same files. */
+/* The checkpoint comes last: killed before it, the run repeats the epoch's end to the same files.
+ */
 static ptie_status finish_epoch(ptie_trainer *t) {
     const double start_s = now_s();
     ptie_scores validation;
@@ -161,8 +165,9 @@ static ptie_status finish_epoch(ptie_trainer *t) {
 
     char note[160];
     const ptie_epoch *row = &t->epochs[t->epoch_count - 1];
-    snprintf(note, sizeof note, "epoch %d/%d loss %.4f PSNR %.2f dB, validation loss %.4f PSNR %.2f dB",
-             row->epoch, t->params->epochs, row->train.loss, row->train.psnr_db, row->validation.loss,
+    snprintf(note, sizeof note,
+             "epoch %d/%d loss %.4f PSNR %.2f dB, validation loss %.4f PSNR %.2f dB", row->epoch,
+             t->params->epochs, row->train.loss, row->train.psnr_db, row->validation.loss,
              row->validation.psnr_db);
     return report(t, note);
 }
@@ -211,7 +216,8 @@ static ptie_status describe_model(ptie_trainer *t) {
     const char *name = strstr(t->dataset->preset_text, "name = ");
     if (name) sscanf(name, "name = %63[^\n]", preset);
     snprintf(text, sizeof text, "preset %s, seed %llu, %u of %llu samples", preset,
-             (unsigned long long)t->dataset->seed, t->train_count, (unsigned long long)t->dataset->count);
+             (unsigned long long)t->dataset->seed, t->train_count,
+             (unsigned long long)t->dataset->count);
     PTIE_TRY(ptie_nn_set_note(t->model, "ptie.trained_on", text));
     snprintf(text, sizeof text, "%llu", (unsigned long long)t->params->seed);
     PTIE_TRY(ptie_nn_set_note(t->model, "ptie.seed", text));
@@ -223,15 +229,19 @@ static ptie_status check_fit(const ptie_model *model, const ptie_dataset *datase
     const int32_t multiple = 1 << (params->levels - 1);
     const int32_t width = dataset->width_px, height = dataset->height_px;
     if (params->in_channels != 1)
-        return PTIE_FAIL(PTIE_ESIZE, "model: does not fit the data set (expected 1 input channel, found %d)",
-                         params->in_channels);
-    if (width % multiple || height % multiple || width < PTIE_SSIM_WINDOW || height < PTIE_SSIM_WINDOW)
         return PTIE_FAIL(PTIE_ESIZE,
-                         "data set: does not fit the model (expected sides that are multiples of %d and at "
-                         "least %d, found %d x %d)",
-                         multiple, PTIE_SSIM_WINDOW, width, height);
+                         "model: does not fit the data set (expected 1 input channel, found %d)",
+                         params->in_channels);
+    if (width % multiple || height % multiple || width < PTIE_SSIM_WINDOW ||
+        height < PTIE_SSIM_WINDOW)
+        return PTIE_FAIL(
+            PTIE_ESIZE,
+            "data set: does not fit the model (expected sides that are multiples of %d and at "
+            "least %d, found %d x %d)",
+            multiple, PTIE_SSIM_WINDOW, width, height);
     if (ptie_dataset_count(dataset, PTIE_VALIDATION) == 0 || dataset->count > INT32_MAX)
-        return PTIE_FAIL(PTIE_EINVAL, "data set: cannot train on its size (expected 3..%d samples, found %llu)",
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "data set: cannot train on its size (expected 3..%d samples, found %llu)",
                          INT32_MAX, (unsigned long long)dataset->count);
     return PTIE_OK;
 }
@@ -247,13 +257,14 @@ static ptie_status prepare(ptie_trainer *t) {
 
     PTIE_TRY(ptie_checkpoint_describe(t));
     PTIE_TRY(claim_outputs(t));
-    PTIE_TRY(ptie_alloc_status(&t->epochs, (size_t)t->params->epochs, sizeof *t->epochs, "training"));
+    PTIE_TRY(
+        ptie_alloc_status(&t->epochs, (size_t)t->params->epochs, sizeof *t->epochs, "training"));
     PTIE_TRY(ptie_alloc_status(&t->order, t->train_count, sizeof *t->order, "training"));
     PTIE_TRY(ptie_alloc_status(&t->parts, batch, sizeof *t->parts, "training"));
-    PTIE_TRY(ptie_alloc_status(&t->scratch, (size_t)ptie_pool_threads(t->engine->pool), t->scratch_bytes,
-                               "scratch of the data set"));
-    PTIE_TRY(ptie_stepper_create(&t->stepper, t->engine, t->model, t->params->batch, dataset->width_px,
-                                 dataset->height_px, loss_weights(t->params)));
+    PTIE_TRY(ptie_alloc_status(&t->scratch, (size_t)ptie_pool_threads(t->engine->pool),
+                               t->scratch_bytes, "scratch of the data set"));
+    PTIE_TRY(ptie_stepper_create(&t->stepper, t->engine, t->model, t->params->batch,
+                                 dataset->width_px, dataset->height_px, loss_weights(t->params)));
     PTIE_TRY(describe_model(t));
     return t->params->resume ? ptie_checkpoint_restore(t) : PTIE_OK;
 }
@@ -268,8 +279,9 @@ static void free_trainer(ptie_trainer *t) {
     ptie_free(t->scratch);
 }
 
-ptie_status ptie_train_run(const ptie_engine *engine, ptie_model *model, const ptie_dataset *dataset,
-                           const char *path, const ptie_train_params *params, ptie_progress progress) {
+ptie_status ptie_train_run(const ptie_engine *engine, ptie_model *model,
+                           const ptie_dataset *dataset, const char *path,
+                           const ptie_train_params *params, ptie_progress progress) {
     ptie_trainer t = {.engine = engine,
                       .model = model,
                       .dataset = dataset,

@@ -14,15 +14,17 @@
 /* NULL-terminated: the words of the key `base`, too. */
 static const char *const preset_names[] = {"paper", "realistic", NULL};
 static const char *const family_names[] = {"parametric", "physical", NULL};
-static const char *const propagation_names[] = {"tie-spectral", "tie-stencil", "angular-spectrum", NULL};
+static const char *const propagation_names[] = {"tie-spectral", "tie-stencil", "angular-spectrum",
+                                                NULL};
 static const char *const boundary_names[] = {"periodic", "mirror", NULL};
 
 /* The built-in presets.
  *
- * Noise of `paper`: the linear TIE and its inverse undo each other, so all that separates noisy from clean
- * is camera noise divided by k^2.  Its rms is 0.04397 (2 pi / wavelength) sigma N pixel^2 / defocus =
- * 5.3 rad * sigma here.  Against flows of height 1 rad, 2 % .. 12 % give clouds of 0.11 .. 0.64 rad rms:
- * from a flow partly clouded to one that is hidden.  Only sigma / amplitude matters. */
+ * Noise of `paper`: the linear TIE and its inverse undo each other, so all that separates noisy
+ * from clean is camera noise divided by k^2.  Its rms is 0.04397 (2 pi / wavelength) sigma N
+ * pixel^2 / defocus = 5.3 rad * sigma here.  Against flows of height 1 rad, 2 % .. 12 % give clouds
+ * of 0.11 .. 0.64 rad rms: from a flow partly clouded to one that is hidden.  Only sigma /
+ * amplitude matters. */
 static ptie_preset built_in(int which, const char *name) {
     ptie_preset paper = {
         .width_px = 256,
@@ -51,20 +53,31 @@ static ptie_preset built_in(int which, const char *name) {
 
 #define FIELD(name) offsetof(ptie_preset, name)
 #define LENGTH_KEY(key_, field_, low_, high_)                                                      \
-    {.section = "optics", .name = key_, .kind = PTIE_INI_QUANTITY, .quantity = PTIE_LENGTH,        \
-     .offset = FIELD(field_), .low = low_, .high = high_}
+    {                                                                                              \
+        .section = "optics", .name = key_, .kind = PTIE_INI_QUANTITY, .quantity = PTIE_LENGTH,     \
+        .offset = FIELD(field_), .low = low_, .high = high_                                        \
+    }
 #define RANGE_KEY(section_, key_, field_, quantity_, low_, high_)                                  \
-    {.section = section_, .name = key_, .kind = PTIE_INI_RANGE, .quantity = quantity_,             \
-     .offset = FIELD(field_), .low = low_, .high = high_}
+    {                                                                                              \
+        .section = section_, .name = key_, .kind = PTIE_INI_RANGE, .quantity = quantity_,          \
+        .offset = FIELD(field_), .low = low_, .high = high_                                        \
+    }
 #define CHOICE_KEY(section_, key_, field_, choices_)                                               \
-    {.section = section_, .name = key_, .kind = PTIE_INI_CHOICE, .offset = FIELD(field_),          \
-     .choices = choices_}
+    {                                                                                              \
+        .section = section_, .name = key_, .kind = PTIE_INI_CHOICE, .offset = FIELD(field_),       \
+        .choices = choices_                                                                        \
+    }
 #define SIZE_KEY(key_, field_)                                                                     \
-    {.section = "image", .name = key_, .kind = PTIE_INI_INTEGER, .offset = FIELD(field_),          \
-     .low = 16, .high = 32768}
+    {                                                                                              \
+        .section = "image", .name = key_, .kind = PTIE_INI_INTEGER, .offset = FIELD(field_),       \
+        .low = 16, .high = 32768                                                                   \
+    }
 
 static const ptie_ini_key fixed_keys[] = {
-    {.section = "preset", .name = "name", .kind = PTIE_INI_TEXT, .offset = FIELD(name),
+    {.section = "preset",
+     .name = "name",
+     .kind = PTIE_INI_TEXT,
+     .offset = FIELD(name),
      .text_bytes = sizeof((ptie_preset *)0)->name},
     CHOICE_KEY("preset", "base", base, preset_names),
     SIZE_KEY("width", width_px),
@@ -99,13 +112,15 @@ static void preset_keys(ptie_ini_key keys[KEYS]) {
 
 static ptie_status check_preset(const ptie_preset *preset, const char *where) {
     if (preset->noise.low == 0 && preset->noise.high > 0)
-        return PTIE_FAIL(PTIE_EFORMAT,
-                         "%s: noise: drawn log-uniformly (expected 0, or a range above 0, found 0 .. %g)",
-                         where, preset->noise.high);
+        return PTIE_FAIL(
+            PTIE_EFORMAT,
+            "%s: noise: drawn log-uniformly (expected 0, or a range above 0, found 0 .. %g)", where,
+            preset->noise.high);
     double weight = 0;
     for (int i = 0; i < PTIE_MORPHOLOGIES; i++) weight += preset->mix.weight[i];
     if (weight <= 0)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: [morphologies]: nothing to draw (expected a weight > 0)", where);
+        return PTIE_FAIL(PTIE_EFORMAT,
+                         "%s: [morphologies]: nothing to draw (expected a weight > 0)", where);
     return PTIE_OK;
 }
 
@@ -137,8 +152,8 @@ static ptie_status find_built_in(ptie_preset *preset, const char *name) {
             *preset = built_in(i, name);
             return PTIE_OK;
         }
-    return PTIE_FAIL(PTIE_ENAME, "%s: unknown preset (did you mean '%s'? a file ends in .ini)", name,
-                     ptie_nearest_word(name, preset_names));
+    return PTIE_FAIL(PTIE_ENAME, "%s: unknown preset (did you mean '%s'? a file ends in .ini)",
+                     name, ptie_nearest_word(name, preset_names));
 }
 
 static bool is_path(const char *name) {

@@ -70,7 +70,8 @@ typedef struct drawing {
 } drawing;
 
 static drawing slice_drawing(const ptie_sampler *sampler, ptie_slicer *slicer) {
-    size_t optics = ptie_optics_scratch(sampler->optics), solver = ptie_tie_scratch(sampler->solver);
+    size_t optics = ptie_optics_scratch(sampler->optics),
+           solver = ptie_tie_scratch(sampler->solver);
     return (drawing){
         .i_plus = ptie_slice(slicer, sampler->pixels, sizeof(float)),
         .i_minus = ptie_slice(slicer, sampler->pixels, sizeof(float)),
@@ -116,8 +117,8 @@ static void normalise(float *map, size_t count, float *offset, float *scale) {
     *scale = range;
 }
 
-ptie_status ptie_sampler_draw(const ptie_sampler *sampler, uint64_t seed, uint64_t index, float *clean,
-                              float *noisy, ptie_sample_info *info, void *scratch) {
+ptie_status ptie_sampler_draw(const ptie_sampler *sampler, uint64_t seed, uint64_t index,
+                              float *clean, float *noisy, ptie_sample_info *info, void *scratch) {
     const ptie_preset *preset = sampler->preset;
     const size_t pixels = sampler->pixels;
     ptie_slicer slicer = {.base = scratch};
@@ -128,7 +129,8 @@ ptie_status ptie_sampler_draw(const ptie_sampler *sampler, uint64_t seed, uint64
     const double amplitude_rad =
         ptie_random_uniform(&random, preset->amplitude_rad.low, preset->amplitude_rad.high);
     const ptie_range noise = preset->noise;
-    const double sigma = noise.low > 0 ? ptie_random_log_uniform(&random, noise.low, noise.high) : 0;
+    const double sigma =
+        noise.low > 0 ? ptie_random_log_uniform(&random, noise.low, noise.high) : 0;
 
     ptie_sample_info drawn = {.sigma = (float)sigma};
     PTIE_TRY(draw_flow(sampler, seed, index, amplitude_rad, clean, &drawn.morphologies));

@@ -7,7 +7,8 @@
 
 #define PI 3.14159265358979323846
 
-double ptie_learning_rate(const ptie_train_params *params, uint64_t steps_per_epoch, uint64_t step) {
+double ptie_learning_rate(const ptie_train_params *params, uint64_t steps_per_epoch,
+                          uint64_t step) {
     const uint64_t epoch = step / steps_per_epoch;
     const double cosine = 0.5 * (1 + cos(PI * (double)epoch / params->epochs));
     const double warmup_steps = params->warmup_epochs * (double)steps_per_epoch;

@@ -17,8 +17,11 @@ void ptie_add_scores(ptie_scores *sums, const ptie_loss_parts *parts) {
 
 ptie_scores ptie_mean_scores(const ptie_scores *sums) {
     const double n = (double)sums->samples;
-    return (ptie_scores){.loss = sums->loss / n, .psnr_db = sums->psnr_db / n, .mae = sums->mae / n,
-                         .ssim = sums->ssim / n, .samples = sums->samples};
+    return (ptie_scores){.loss = sums->loss / n,
+                         .psnr_db = sums->psnr_db / n,
+                         .mae = sums->mae / n,
+                         .ssim = sums->ssim / n,
+                         .samples = sums->samples};
 }
 
 /* One block of samples; parts are per sample of the block. */
@@ -58,15 +61,16 @@ static workspace slice_workspace(const scoring *s, ptie_slicer *slicer) {
 
 static void measure(const scoring *s, ptie_loss_parts *parts, const float *estimate,
                     const workspace *w) {
-    ptie_loss_measure(s->engine, parts, estimate, w->clean, s->dataset->width_px, s->dataset->height_px,
-                      s->weights, w->plan);
+    ptie_loss_measure(s->engine, parts, estimate, w->clean, s->dataset->width_px,
+                      s->dataset->height_px, s->weights, w->plan);
 }
 
 static ptie_status score_one(void *context, size_t i, int32_t worker) {
     scoring *s = context;
     ptie_slicer slicer = {.base = s->scratch + (size_t)worker * s->scratch_bytes};
     const workspace w = slice_workspace(s, &slicer);
-    PTIE_TRY(ptie_dataset_fetch(s->dataset, s->split, s->first + i, w.clean, w.noisy, NULL, w.plan));
+    PTIE_TRY(
+        ptie_dataset_fetch(s->dataset, s->split, s->first + i, w.clean, w.noisy, NULL, w.plan));
     if (s->input) measure(s, &s->noisy[i], w.noisy, &w);
     if (!s->denoiser) return PTIE_OK;
     PTIE_TRY(ptie_nn_denoise(s->denoiser, w.denoised, w.noisy, w.plan));
@@ -93,10 +97,13 @@ static ptie_status score_blocks(scoring *s, ptie_scores *noisy, ptie_scores *den
 static ptie_status prepare(scoring *s, ptie_denoiser **denoiser, const ptie_model *model) {
     const int32_t width = s->dataset->width_px, height = s->dataset->height_px;
     if (width < PTIE_SSIM_WINDOW || height < PTIE_SSIM_WINDOW)
-        return PTIE_FAIL(PTIE_ESIZE, "data set: maps are too small for SSIM (expected at least %d x %d, "
-                         "found %d x %d)", PTIE_SSIM_WINDOW, PTIE_SSIM_WINDOW, width, height);
+        return PTIE_FAIL(PTIE_ESIZE,
+                         "data set: maps are too small for SSIM (expected at least %d x %d, "
+                         "found %d x %d)",
+                         PTIE_SSIM_WINDOW, PTIE_SSIM_WINDOW, width, height);
     if (ptie_dataset_count(s->dataset, s->split) == 0)
-        return PTIE_FAIL(PTIE_EINVAL, "data set: the split is empty (expected at least 3 samples, found %llu)",
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "data set: the split is empty (expected at least 3 samples, found %llu)",
                          (unsigned long long)s->dataset->count);
     if (model) {
         PTIE_TRY(ptie_nn_denoiser(denoiser, s->engine, model, width, height));
@@ -105,14 +112,18 @@ static ptie_status prepare(scoring *s, ptie_denoiser **denoiser, const ptie_mode
     ptie_slicer slicer = {0};
     slice_workspace(s, &slicer);
     s->scratch_bytes = slicer.used;
-    return ptie_alloc_status(&s->scratch, (size_t)ptie_pool_threads(s->engine->pool), s->scratch_bytes,
-                             "scratch of the evaluation");
+    return ptie_alloc_status(&s->scratch, (size_t)ptie_pool_threads(s->engine->pool),
+                             s->scratch_bytes, "scratch of the evaluation");
 }
 
 ptie_status ptie_score_split(const ptie_engine *engine, const ptie_model *model,
-                             const ptie_dataset *dataset, ptie_split split, ptie_loss_weights weights,
-                             ptie_scores *noisy, ptie_scores *denoised, ptie_progress progress) {
-    scoring s = {.engine = engine, .dataset = dataset, .split = split, .weights = weights,
+                             const ptie_dataset *dataset, ptie_split split,
+                             ptie_loss_weights weights, ptie_scores *noisy, ptie_scores *denoised,
+                             ptie_progress progress) {
+    scoring s = {.engine = engine,
+                 .dataset = dataset,
+                 .split = split,
+                 .weights = weights,
                  .input = noisy != NULL};
     ptie_denoiser *denoiser = NULL;
     ptie_scores noisy_sums = {0}, denoised_sums = {0};

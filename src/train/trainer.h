@@ -27,8 +27,8 @@ typedef struct ptie_trainer {
     ptie_text last_path, settings;
     uint64_t steps_per_epoch;
     uint32_t train_count;
-    uint32_t *order;       /* samples of the epoch under way */
-    size_t ordered_epoch;  /* epoch that `order` belongs to; SIZE_MAX at first */
+    uint32_t *order;        /* samples of the epoch under way */
+    size_t ordered_epoch;   /* epoch that `order` belongs to; SIZE_MAX at first */
     ptie_loss_parts *parts; /* one per sample of a batch */
     unsigned char *scratch; /* one part per worker */
     size_t scratch_bytes;
@@ -40,8 +40,8 @@ typedef struct ptie_trainer {
 ptie_status ptie_checkpoint_describe(ptie_trainer *trainer);
 /* Writes <path>.last: model, moments (opt.m.*, opt.v.*), position. */
 ptie_status ptie_checkpoint_save(const ptie_trainer *trainer);
-/* Sets model, moments and position from <path>.last.  PTIE_EFORMAT when it is damaged, PTIE_EINVAL when it
-   belongs to a run with other settings; the trainer is then not to be used. */
+/* Sets model, moments and position from <path>.last.  PTIE_EFORMAT when it is damaged, PTIE_EINVAL
+   when it belongs to a run with other settings; the trainer is then not to be used. */
 ptie_status ptie_checkpoint_restore(ptie_trainer *trainer);
 
 #endif

@@ -47,8 +47,9 @@ static void paper_preset_has_the_papers_numbers(void **state) {
 
 static void a_file_changes_what_it_names_and_keeps_its_base(void **state) {
     (void)state;
-    static const char text[] = "[image]\nwidth = 48\n[preset]\nbase = realistic\n[optics]\ndefocus = 5 mm\n"
-                               "[morphologies]\nplasma = 0\n";
+    static const char text[] =
+        "[image]\nwidth = 48\n[preset]\nbase = realistic\n[optics]\ndefocus = 5 mm\n"
+        "[morphologies]\nplasma = 0\n";
     const char *path = support_temporary("mine.ini");
     support_write(path, text, sizeof text - 1);
     ptie_preset *mine, *base;
@@ -86,11 +87,13 @@ static void bad_presets_are_named(void **state) {
     load_text("[optics]\nwavelenght = 532 nm\n", PTIE_ENAME, "did you mean 'wavelength'");
     load_text("[optic]\nwavelength = 532 nm\n", PTIE_ENAME, "did you mean [optics]");
     load_text("[morphologies]\nshok = 1\n", PTIE_ENAME, "did you mean 'shock'");
-    load_text("[optics]\nwavelength = 532\n", PTIE_EFORMAT, "bad.ini:2: wavelength: expected a length");
+    load_text("[optics]\nwavelength = 532\n", PTIE_EFORMAT,
+              "bad.ini:2: wavelength: expected a length");
     load_text("[preset]\nbase = papers\n", PTIE_ENAME, "did you mean 'paper'");
     load_text("[image]\nwidth = 8\n", PTIE_EFORMAT, "out of range");
     load_text("[camera]\nnoise = 0 .. 5 %\n", PTIE_EFORMAT, "log-uniform");
-    load_text("[morphologies]\njet = 0\neddies = 0\nfront = 0\npockets = 0\nfan = 0\ndiffusion = 0\nshock = 0\n"
+    load_text("[morphologies]\njet = 0\neddies = 0\nfront = 0\npockets = 0\nfan = 0\ndiffusion = "
+              "0\nshock = 0\n"
               "combustion = 0\nplasma = 0\nrandom = 0\nnozzle = 0\n",
               PTIE_EFORMAT, "nothing to draw");
 }
@@ -167,7 +170,8 @@ static void without_noise_noisy_is_clean(void **state) {
         ptie_sample_info info;
         draw_rad(preset, index, clean, noisy, &info);
         assert_near(info.sigma, 0, 0);
-        /* Rounding of intensities near 1 (2^-25) and of two transforms; worst of these samples 8e-7. */
+        /* Rounding of intensities near 1 (2^-25) and of two transforms; worst of these samples
+         * 8e-7. */
         assert_near(support_relative_error(noisy, clean, COUNT), 0, 1e-5);
     }
     ptie_preset_free(preset);
@@ -185,8 +189,9 @@ static double mode_power(const float *map, int side, int mode, bool along_y) {
     return re * re + im * im;
 }
 
-/* White noise of relative standard deviation s per image, divided by k^2: each mode of the error has the mean
-   power N^2 (2 pi / lambda)^2 s^2 / (2 dz^2 k^4), so rms = 0.04397 (2 pi / lambda) s N p^2 / dz. */
+/* White noise of relative standard deviation s per image, divided by k^2: each mode of the error
+   has the mean power N^2 (2 pi / lambda)^2 s^2 / (2 dz^2 k^4), so rms = 0.04397 (2 pi / lambda) s N
+   p^2 / dz. */
 static void the_error_in_rad_is_the_closed_form_noise(void **state) {
     (void)state;
     enum { SIDE = 32, COUNT = SIDE * SIDE, SAMPLES = 400 };
@@ -206,9 +211,9 @@ static void the_error_in_rad_is_the_closed_form_noise(void **state) {
             mode3 += mode_power(clean, SIDE, 3, axis) / 2 / SAMPLES;
         }
     }
-    /* Powers of modes are exponentially distributed.  The lattice sums of k^-8 and k^-4 give one sample's
-       total power a relative deviation of 0.49, so its root over 400 samples 0.012; the mean over 2 x 400
-       modes has 0.035.  Five of each. */
+    /* Powers of modes are exponentially distributed.  The lattice sums of k^-8 and k^-4 give one
+       sample's total power a relative deviation of 0.49, so its root over 400 samples 0.012; the
+       mean over 2 x 400 modes has 0.035.  Five of each. */
     const double rms = 0.04397 * k_light * s * SIDE * pixel * pixel / dz;
     assert_near(sqrt(power), rms, 5 * 0.012 * rms);
     const double k1 = TWO_PI / (SIDE * pixel);

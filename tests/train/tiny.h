@@ -7,7 +7,8 @@
 
 #include <ptie/dataset.h>
 
-/* Loads a preset of `side` x `side` maps whose [camera] noise is `noise`; the rest is preset `paper`. */
+/* Loads a preset of `side` x `side` maps whose [camera] noise is `noise`; the rest is preset
+ * `paper`. */
 static inline ptie_preset *tiny_preset(int side, const char *noise) {
     char text[256];
     const char *path = support_temporary("tiny.ini");
