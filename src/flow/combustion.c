@@ -1,10 +1,132 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Combustion. */
-#include "flow/morphology.h"
+/* Flames and the hot plumes above them: tongues of burnt gas with thin fronts that bulge and roll as they
+   rise.  docs/math.md (F5), (F11). */
+#include <math.h>
 
-/* Until its own model lands. */
-static ptie_status draw(float *map, const ptie_scene *scene, ptie_random *random) {
-    return ptie_flow_jet.parametric(map, scene, random);
+#include "flow/abel.h"
+#include "flow/gas.h"
+#include "flow/morphology.h"
+#include "flow/stream.h"
+
+#define MOST_TONGUES 3
+
+typedef struct tongue {
+    float offset, lean;      /* of its foot, in half-widths; sideways per unit of height */
+    float size, wave, phase; /* width, in half-widths; bulges: rad per unit, rad */
+    float strength;
+} tongue;
+
+typedef struct flame {
+    ptie_stream stream;
+    int count;
+    tongue tongues[MOST_TONGUES];
+    float bulge;           /* amplitude of the bulges */
+    float foot;            /* height over which it sets in, units */
+    float tip;             /* height at which the flame closes, units; 0: an open plume */
+    float sheet, glow;     /* parametric: thickness of the front, brightness inside */
+    float cooling;         /* height over which the plume cools, units */
+    float rad;             /* physical: rad per unit of path of the hottest gas */
+    ptie_projection disc;  /* of radius 1 */
+} flame;
+
+/* Half-width of a tongue: bulges steepen upwards into mushrooms, a flame closes at its tip. */
+static float half_width(const flame *f, const tongue *t, const ptie_parcel *p) {
+    float angle = t->wave * p->x - t->phase, up = ptie_smoothstep(p->x / (6 * f->stream.radius));
+    float bulging = 1 + f->bulge * up * sinf(angle + 0.7f * sinf(angle));
+    float taper = 0.6f + 0.4f * ptie_smoothstep(p->x / f->foot);
+    if (f->tip > 0) {
+        float rest = 1 - p->x / (f->tip * t->strength);
+        taper *= rest > 0 ? sqrtf(rest) : 0;
+    }
+    return t->size * bulging * taper;
 }
 
-const ptie_morphology ptie_flow_combustion = {"combustion", "Combustion", draw, draw};
+/* Position across a tongue, in its own half-widths; the half-width goes to *width (units). */
+static float across(const flame *f, const tongue *t, const ptie_parcel *p, float *width) {
+    float half = half_width(f, t, p);
+    *width = half * p->width;
+    return (p->across - t->offset - t->lean * p->x / p->width) / fmaxf(half, 0.02f);
+}
+
+static float bright_at(const void *flow, float x, float y) {
+    const flame *f = flow;
+    if (x < 0) return 0;
+    ptie_parcel p = ptie_stream_at(&f->stream, x, y);
+    if (fabsf(p.across) > 6) return 0;
+    float value = 0, width;
+    for (int i = 0; i < f->count; i++) {
+        float r = fabsf(across(f, &f->tongues[i], &p, &width)), thin = f->sheet / fmaxf(width, 0.2f * f->sheet);
+        if (r > 1 + 4 * thin || width < 0.1f * f->sheet) continue;
+        float inside = f->glow * ptie_rise((1 - r) / thin), front = (1 - f->glow) * ptie_bell((r - 1) / thin);
+        value = fmaxf(value, f->tongues[i].strength * (inside + front));
+    }
+    return value * f->cooling / (f->cooling + x) * fmaxf(0, 1 + 0.3f * p.gust) * ptie_smoothstep(x / f->foot);
+}
+
+static float hot_at(const void *flow, float x, float y) {
+    const flame *f = flow;
+    if (x < 0) return 0;
+    ptie_parcel p = ptie_stream_at(&f->stream, x, y);
+    if (fabsf(p.across) > 6) return 0;
+    float path = 0, width;
+    for (int i = 0; i < f->count; i++) {
+        float r = across(f, &f->tongues[i], &p, &width);
+        path += f->tongues[i].strength * width * ptie_projection_at(&f->disc, r);
+    }
+    float hot = f->cooling / (f->cooling + x);
+    return f->rad * hot * path * fmaxf(0, 1 + 0.15f * p.gust) * ptie_smoothstep(x / f->foot);
+}
+
+static void draw_tongues(flame *f, const ptie_scene *scene, ptie_random *random) {
+    double rise = f->stream.speed * scene->time_s;
+    f->count = ptie_random_integer(random, 1, MOST_TONGUES);
+    for (int i = 0; i < MOST_TONGUES; i++) {
+        tongue *t = &f->tongues[i];
+        bool first = i == 0;
+        t->offset = first ? 0 : ptie_draw(random, -1.1, 1.1);
+        t->lean = ptie_draw(random, -0.08, 0.08);
+        t->size = first ? 1 : ptie_draw(random, 0.35, 0.8);
+        t->wave = ptie_draw(random, 0.5, 1.3) / f->stream.radius * 0.7f;
+        t->strength = first ? 1 : ptie_draw(random, 0.5, 1);
+        double start = ptie_random_uniform(random, 0, 6.283185307);
+        t->phase = (float)fmod(start + (double)t->wave * rise, 6.283185307179586);
+    }
+}
+
+static ptie_status draw_flame(flame *f, const ptie_scene *scene, ptie_random *random, const ptie_axes *axes) {
+    ptie_stream_ranges ranges = {0.04, 0.16, 0, 0.12, 0.03, 0.35};
+    f->bulge = ptie_draw(random, 0.05, 0.5);
+    f->foot = ptie_draw_log(random, 0.03, 0.3);
+    f->tip = ptie_chance(random, 0.4) ? ptie_draw(random, 0.4, 1) * axes->end : 0;
+    f->sheet = ptie_draw_log(random, 0.006, 0.03);
+    f->glow = ptie_draw(random, 0.1, 0.9);
+    f->cooling = ptie_draw_log(random, 0.4, 6) * axes->end;
+    PTIE_TRY(ptie_stream_draw(&f->stream, scene, random, &ranges, (double)axes->end));
+    draw_tongues(f, scene, random);
+    return PTIE_OK;
+}
+
+static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *random) {
+    ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_UP, -0.15, 0.2, 0.35);
+    flame f = {0};
+    PTIE_TRY(draw_flame(&f, scene, random, &axes));
+    ptie_paint(map, scene, &axes, bright_at, &f);
+    ptie_stream_free(&f.stream);
+    return PTIE_OK;
+}
+
+/* Burnt gas at the pressure of the air: rho = rho0 T0 / T. */
+static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
+    ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_UP, -0.15, 0.2, 0.35);
+    flame f = {0};
+    double hotter = ptie_random_log_uniform(random, 1.3, 7), edge = ptie_random_log_uniform(random, 0.05, 0.35);
+    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene);
+    f.rad = (float)(path * ptie_ambient_refractivity() * (1 / hotter - 1));
+    ptie_projection_fill_disc(&f.disc, edge);
+    PTIE_TRY(draw_flame(&f, scene, random, &axes));
+    ptie_paint(map, scene, &axes, hot_at, &f);
+    ptie_stream_free(&f.stream);
+    return PTIE_OK;
+}
+
+const ptie_morphology ptie_flow_combustion = {"combustion", "Combustion", parametric, physical};

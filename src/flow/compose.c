@@ -67,6 +67,7 @@ typedef struct member {
     float height;
     blend blend;
     uint64_t key;
+    bool aligned; /* lies along the same axis as the others that do */
 } member;
 
 static int32_t pick(const double *weight, ptie_random *random) {
@@ -86,6 +87,7 @@ static member member_draw(const ptie_flow_mix *mix, ptie_random *random) {
     float height = ptie_draw(random, 0.35, 1);
     int32_t chosen = ptie_random_integer(random, 0, BLENDS - 1);
     m.key = ptie_key_draw(random);
+    m.aligned = ptie_chance(random, 0.6);
     if (mix->family == PTIE_PARAMETRIC) m.height = height, m.blend = (blend)chosen;
     return m;
 }
@@ -123,6 +125,7 @@ ptie_status ptie_flow_compose(float *phase, const ptie_flow_mix *mix, const ptie
     double smoothing = ptie_random_uniform(&random, mix->smoothing_px.low, mix->smoothing_px.high);
     double gradient = ptie_random_uniform(&random, mix->gradient.low, mix->gradient.high);
     double angle = ptie_random_uniform(&random, 0, 2 * acos(-1.0));
+    uint64_t alignment = ptie_key_draw(&random) | 1;
     float *other;
     PTIE_TRY(ptie_alloc_status(&other, count, sizeof *other, "flow"));
     ptie_status status = PTIE_OK;
@@ -130,6 +133,7 @@ ptie_status ptie_flow_compose(float *phase, const ptie_flow_mix *mix, const ptie
     for (int32_t i = 0; i < members; i++) {
         member m = member_draw(mix, &random);
         if (i == 0) m.height = 1, m.blend = BLEND_SUM;
+        scene.alignment = m.aligned ? alignment : 0;
         ptie_random_init(&own, m.key, PTIE_STREAM_FLOW, (uint64_t)i);
         PTIE_TRY_DONE(render(i == 0 ? phase : other, m.morphology, mix->family, &scene, &own));
         if (i > 0) join(phase, other, count, &m);

@@ -2,8 +2,8 @@
 /* Jet plume. */
 #include <math.h>
 
+#include "flow/exhaust.h"
 #include "flow/morphology.h"
-#include "flow/stream.h"
 
 typedef struct jet {
     ptie_stream stream;
@@ -36,7 +36,7 @@ static float at(const void *flow, float x, float y) {
 static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, -0.15, 0.3, 0.5);
     double length = (double)axes.end;
-    ptie_stream_ranges ranges = {0.015, 0.09, 0.02, 0.16, 0.05, 0.5};
+    ptie_stream_ranges ranges = {0.018, 0.11, 0.02, 0.16, 0.05, 0.5};
     jet j = {0};
     j.decay = ptie_draw(random, 0.25, 1.6) * axes.end;
     j.gusts = ptie_draw(random, 0, 0.35);
@@ -55,4 +55,29 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     return PTIE_OK;
 }
 
-const ptie_morphology ptie_flow_jet = {"jet", "Jet plume", parametric, parametric};
+typedef struct gas_jet {
+    ptie_stream stream;
+    ptie_exhaust exhaust;
+} gas_jet;
+
+static float gas_at(const void *flow, float x, float y) {
+    const gas_jet *j = flow;
+    if (x < 0) return 0;
+    ptie_parcel p = ptie_stream_at(&j->stream, x, y);
+    return ptie_exhaust_at(&j->exhaust, &p, x, y);
+}
+
+static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
+    ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, -0.05, 0.3, 0.5);
+    gas_jet j = {0};
+    float nozzle = ptie_draw_log(random, 0.015, 0.06);
+    ptie_exhaust_draw(&j.exhaust, scene, random, nozzle);
+    double radius = (double)j.exhaust.radius;
+    ptie_stream_ranges ranges = {radius, radius, 0.09, 0.15, 0.1, 0.45};
+    PTIE_TRY(ptie_stream_draw(&j.stream, scene, random, &ranges, (double)axes.end));
+    ptie_paint(map, scene, &axes, gas_at, &j);
+    ptie_stream_free(&j.stream);
+    return PTIE_OK;
+}
+
+const ptie_morphology ptie_flow_jet = {"jet", "Jet plume", parametric, physical};

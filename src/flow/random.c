@@ -1,10 +1,97 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Random phase object. */
-#include "flow/morphology.h"
+/* Random phase objects: islands cut out of a random field, overlapping smooth bodies, and von Karman
+   phase screens.  docs/math.md (F4). */
+#include <math.h>
 
-/* Until its own model lands. */
-static ptie_status draw(float *map, const ptie_scene *scene, ptie_random *random) {
-    return ptie_flow_jet.parametric(map, scene, random);
+#include "flow/morphology.h"
+#include "flow/turbulence.h"
+
+typedef struct island {
+    ptie_turbulence turbulence;
+    float level, edge; /* of the field that becomes an island; softness of its shore */
+    float relief;      /* share of the field's own relief on the islands */
+    float radius, softness; /* of the window, units */
+    float tall;        /* 1, or rad per unit of the field */
+} island;
+
+static float window(const island *o, float x, float y) {
+    float r = sqrtf(x * x + y * y);
+    return ptie_rise((o->radius - r) / o->softness);
 }
 
-const ptie_morphology ptie_flow_random = {"random", "Random phase object", draw, draw};
+static float island_at(const void *flow, float x, float y) {
+    const island *o = flow;
+    float inside = window(o, x, y), field[PTIE_TURBULENCE_FIELDS];
+    if (inside < 1e-4f) return 0;
+    ptie_turbulence_at(&o->turbulence, x, y, field);
+    float shore = ptie_smoothstep((field[0] - o->level) / o->edge);
+    return inside * shore * (1 + o->relief * field[1]);
+}
+
+static float screen_at(const void *flow, float x, float y) {
+    const island *o = flow;
+    float field[PTIE_TURBULENCE_FIELDS];
+    ptie_turbulence_at(&o->turbulence, x, y, field);
+    return o->tall * field[0];
+}
+
+static ptie_status draw_field(island *o, const ptie_scene *scene, ptie_random *random, double low, double high) {
+    double outer = ptie_random_log_uniform(random, low, high), speed = ptie_speed_draw(scene, random);
+    double period = fmax(2.5, 2.5 * outer);
+    ptie_turbulence_params params = {.key = ptie_key_draw(random),
+                                     .period = period,
+                                     .outer = outer,
+                                     .inner = outer * ptie_random_log_uniform(random, 0.04, 0.3),
+                                     .drift = speed * scene->time_s,
+                                     .turns = 0.05 * speed / outer * scene->time_s,
+                                     .cells = ptie_turbulence_cells(scene, period)};
+    return ptie_turbulence_create(&o->turbulence, &params);
+}
+
+/* Ellipses of all sizes that drift about. */
+static void draw_bodies(float *map, const ptie_scene *scene, ptie_random *random, const ptie_axes *axes) {
+    int32_t count = ptie_random_integer(random, 2, 10);
+    double speed = 0.5 * ptie_speed_draw(scene, random);
+    ptie_clear(map, scene);
+    for (int32_t i = 0; i < count; i++) {
+        double span = (double)(axes->end - axes->start) + 0.4, x = ptie_random_uniform(random, 0, span);
+        double pace = ptie_random_uniform(random, 0.4, 1) * speed;
+        ptie_spot spot = {.y = ptie_draw(random, (double)-axes->side, (double)axes->side)};
+        spot.x = axes->start - 0.2f + (float)fmod(x + pace * scene->time_s, span);
+        spot.along = ptie_draw_log(random, 0.02, 0.2);
+        spot.across = spot.along * ptie_draw_log(random, 0.35, 1);
+        spot.angle = ptie_draw(random, 0, 3.1416);
+        spot.height = ptie_draw(random, 0.3, 1);
+        ptie_splat(map, scene, axes, &spot);
+    }
+}
+
+static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *random) {
+    ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ANY, 0.35, 0.65, 0.3);
+    island o = {.level = ptie_draw(random, -0.3, 1), .edge = ptie_draw_log(random, 0.1, 2.5)};
+    o.relief = ptie_draw(random, 0, 0.4);
+    o.radius = ptie_draw(random, 0.25, 0.8);
+    o.softness = ptie_draw(random, 0.05, 0.25);
+    if (ptie_chance(random, 0.35)) {
+        draw_bodies(map, scene, random, &axes);
+        return PTIE_OK;
+    }
+    PTIE_TRY(draw_field(&o, scene, random, 0.25, 1));
+    ptie_paint(map, scene, &axes, island_at, &o);
+    ptie_turbulence_free(&o.turbulence);
+    return PTIE_OK;
+}
+
+/* A turbulent layer across the beam: r0 from a tenth of the frame to all of it. */
+static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
+    ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ANY, 0.35, 0.65, 0.3);
+    double r0 = ptie_random_log_uniform(random, 0.1, 1);
+    island o = {0};
+    PTIE_TRY(draw_field(&o, scene, random, 0.3, 2));
+    o.tall = o.turbulence.screen_rad * (float)pow(r0, -5.0 / 6);
+    ptie_paint(map, scene, &axes, screen_at, &o);
+    ptie_turbulence_free(&o.turbulence);
+    return PTIE_OK;
+}
+
+const ptie_morphology ptie_flow_random = {"random", "Random phase object", parametric, physical};

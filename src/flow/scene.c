@@ -2,6 +2,7 @@
 #include "flow/scene.h"
 
 #include <math.h>
+#include <string.h>
 
 #define PI 3.14159265358979323846
 
@@ -19,6 +20,11 @@ static double heading_draw(ptie_random *random, ptie_heading heading) {
 
 ptie_axes ptie_axes_draw(const ptie_scene *scene, ptie_random *random, ptie_heading heading,
                          double origin_low, double origin_high, double across) {
+    ptie_random common;
+    if (scene->alignment) {
+        ptie_random_init(&common, scene->alignment, PTIE_STREAM_FLOW, 0);
+        random = &common;
+    }
     double angle = heading_draw(random, heading);
     double place = ptie_random_uniform(random, origin_low, origin_high);
     double aside = ptie_random_uniform(random, -across, across);
@@ -63,6 +69,39 @@ void ptie_paint(float *map, const ptie_scene *scene, const ptie_axes *axes, ptie
     }
 }
 
+void ptie_clear(float *map, const ptie_scene *scene) {
+    memset(map, 0, sizeof *map * (size_t)scene->width * (size_t)scene->height);
+}
+
+/* A point of the flow in px of the image. */
+typedef struct place {
+    double x, y;
+} place;
+
+static place place_of(const ptie_axes *axes, float x, float y) {
+    double along = (double)(x / axes->pixel), across = (double)(axes->mirror * y / axes->pixel);
+    double c = (double)axes->cosine, s = (double)axes->sine;
+    return (place){(double)axes->origin_x + c * along - s * across,
+                   (double)axes->origin_y + s * along + c * across};
+}
+
+void ptie_stamp(float *map, const ptie_scene *scene, const ptie_axes *axes, float x, float y, float reach,
+                ptie_radial_point radial, const void *context) {
+    place centre = place_of(axes, x, y);
+    double radius = (double)(reach / axes->pixel);
+    int32_t top = (int32_t)fmax(0, ceil(centre.y - radius));
+    int32_t bottom = (int32_t)fmin(scene->height - 1, floor(centre.y + radius));
+    int32_t left = (int32_t)fmax(0, ceil(centre.x - radius));
+    int32_t right = (int32_t)fmin(scene->width - 1, floor(centre.x + radius));
+    for (int32_t row = top; row <= bottom; row++) {
+        float dy = (float)(row - centre.y) * axes->pixel, *line = map + (size_t)row * (size_t)scene->width;
+        for (int32_t column = left; column <= right; column++) {
+            float dx = (float)(column - centre.x) * axes->pixel, r = sqrtf(dx * dx + dy * dy);
+            if (r < reach) line[column] += radial(context, r);
+        }
+    }
+}
+
 /* Quadratic form a dx^2 + 2 b dx dy + c dy^2 of a spot, in px. */
 typedef struct spot_form {
     double x, y, a, b, c;
@@ -73,10 +112,10 @@ static spot_form form_of(const ptie_axes *axes, const ptie_spot *spot) {
     double turn = (double)(axes->mirror * spot->angle);
     double flow = atan2((double)axes->sine, (double)axes->cosine) + turn;
     double c = cos(flow), s = sin(flow), p = 1 / (along * along), q = 1 / (across * across);
-    double x = (double)(spot->x / axes->pixel), y = (double)(axes->mirror * spot->y / axes->pixel);
+    place centre = place_of(axes, spot->x, spot->y);
     return (spot_form){
-        .x = (double)axes->origin_x + (double)axes->cosine * x - (double)axes->sine * y,
-        .y = (double)axes->origin_y + (double)axes->sine * x + (double)axes->cosine * y,
+        .x = centre.x,
+        .y = centre.y,
         .a = c * c * p + s * s * q,
         .b = c * s * (p - q),
         .c = s * s * p + c * c * q,

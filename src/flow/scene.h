@@ -9,6 +9,7 @@
 typedef struct ptie_scene {
     int32_t width, height; /* px */
     double pixel_m, wavelength_m, time_s;
+    uint64_t alignment; /* not 0: flows with the same number share direction and place */
 } ptie_scene;
 
 /* Flow coordinates: x runs downstream from the flow's origin, y across it, both in units of the frame's
@@ -48,6 +49,9 @@ typedef float (*ptie_point)(const void *flow, float x, float y);
 void ptie_paint(float *map, const ptie_scene *scene, const ptie_axes *axes, ptie_point point,
                 const void *flow);
 
+/* map = 0 everywhere. */
+void ptie_clear(float *map, const ptie_scene *scene);
+
 /* A Gaussian spot with half-axes (standard deviations) along and across the direction `angle`. */
 typedef struct ptie_spot {
     float x, y; /* flow coordinates */
@@ -55,6 +59,11 @@ typedef struct ptie_spot {
 } ptie_spot;
 /* Adds a spot, out to 3.5 standard deviations. */
 void ptie_splat(float *map, const ptie_scene *scene, const ptie_axes *axes, const ptie_spot *spot);
+
+/* Adds radial(context, r), r in units from the point (x, y), where r < reach. */
+typedef float (*ptie_radial_point)(const void *context, float r);
+void ptie_stamp(float *map, const ptie_scene *scene, const ptie_axes *axes, float x, float y, float reach,
+                ptie_radial_point radial, const void *context);
 
 /* Things that follow each other downstream at a spacing, born upstream from the hash of their number:
    calls for the numbers whose place (number * spacing + shift) lies in start .. end. */

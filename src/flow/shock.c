@@ -1,10 +1,175 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Shock front. */
+/* Shock fronts: blast waves, bow shocks, and the lattice of shocks in a supersonic stream.
+   docs/math.md (F9). */
+#include <math.h>
+
+#include "flow/abel.h"
+#include "flow/gas.h"
 #include "flow/morphology.h"
 
-/* Until its own model lands. */
-static ptie_status draw(float *map, const ptie_scene *scene, ptie_random *random) {
-    return ptie_flow_jet.parametric(map, scene, random);
+/* Parametric shapes. */
+typedef enum shock_kind { SHOCK_BLAST, SHOCK_BOW, SHOCK_LATTICE, SHOCK_KINDS } shock_kind;
+
+#define MOST_SHOCKS 3
+typedef struct shock {
+    shock_kind kind;
+    int count;
+    float x[MOST_SHOCKS], y[MOST_SHOCKS], radius[MOST_SHOCKS], height[MOST_SHOCKS];
+    float thickness, tail, dip; /* of a front; length of what follows it, units; share of Friedlander's dip */
+    float slope, standoff;             /* bow: of its far flanks; from the origin to its nose, units */
+    float half, cell, fade;            /* lattice: half-height, length of a cell, fading, units */
+} shock;
+
+/* d: distance ahead of the front.  A steep rise, then Friedlander's decay. */
+static float profile(const shock *s, float d) {
+    if (d > 0) return ptie_bell(d / s->thickness);
+    float t = -d / s->tail;
+    return t < 12 ? expf(-t) * fmaxf(0, 1 - s->dip * t) : 0;
 }
 
-const ptie_morphology ptie_flow_shock = {"shock", "Shock front", draw, draw};
+static float bow(const shock *s, float x, float y) {
+    float aside = y / s->standoff;
+    float front = s->standoff * (s->slope * (sqrtf(1 + aside * aside) - 1) - 1); /* a hyperbola */
+    return profile(s, front - x) * expf(-0.15f * fabsf(aside));
+}
+
+/* Oblique shocks thrown back and forth between the stream's boundaries. */
+static float lattice(const shock *s, float x, float y) {
+    if (x < 0) return 0;
+    float phase = x / s->cell - floorf(x / s->cell), zigzag = s->half * fabsf(1 - 2 * phase);
+    float cosine = s->cell / sqrtf(s->cell * s->cell + 4 * s->half * s->half);
+    float d = (fabsf(y) - zigzag) * cosine;
+    float inside = ptie_rise((s->half - fabsf(y)) / s->thickness);
+    float sheet = expf(-fabsf(d) / s->thickness * 0.7f);
+    return inside * (sheet + 0.35f * ptie_rise(d / s->thickness)) * expf(-x / s->fade);
+}
+
+static float at(const void *flow, float x, float y) {
+    const shock *s = flow;
+    if (s->kind == SHOCK_BOW) return bow(s, x, y);
+    if (s->kind == SHOCK_LATTICE) return lattice(s, x, y);
+    float sum = 0;
+    for (int i = 0; i < s->count; i++) {
+        float dx = x - s->x[i], dy = y - s->y[i];
+        sum += s->height[i] * profile(s, sqrtf(dx * dx + dy * dy) - s->radius[i]);
+    }
+    return sum;
+}
+
+/* Sedov's law from a radius now (`start`) and a front speed now: R = start (1 + 5/2 speed t / start)^(2/5).
+   Beyond `most` the next blast is seen, so that a recording never runs empty. */
+static double blast_radius(double start, double speed, double most, double time_s) {
+    double life = (pow(most / start, 2.5) - 1) * start / (2.5 * speed);
+    double since = fmod(time_s, life);
+    return start * pow(1 + 2.5 * speed * since / start, 0.4);
+}
+
+static void draw_blasts(shock *s, const ptie_scene *scene, ptie_random *random, const ptie_axes *axes) {
+    double speed = ptie_speed_draw(scene, random);
+    s->count = ptie_random_integer(random, 1, MOST_SHOCKS);
+    for (int i = 0; i < MOST_SHOCKS; i++) {
+        double start = ptie_random_uniform(random, 0.12, 0.6);
+        s->x[i] = ptie_draw(random, 0, (double)axes->end);
+        s->y[i] = ptie_draw(random, (double)-axes->side, (double)axes->side);
+        s->height[i] = ptie_draw(random, 0.4, 1);
+        s->radius[i] = (float)blast_radius(start, speed, 1.2, scene->time_s);
+    }
+}
+
+static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *random) {
+    ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, 0.05, 0.35, 0.4);
+    shock s = {.kind = (shock_kind)ptie_random_integer(random, 0, SHOCK_KINDS - 1)};
+    s.thickness = ptie_draw_log(random, 0.005, 0.02);
+    s.tail = ptie_draw_log(random, 0.03, 0.4);
+    s.dip = ptie_chance(random, 0.5) ? ptie_draw(random, 0, 0.6) : 0;
+    s.slope = ptie_draw(random, 0.5, 1.8);
+    s.standoff = ptie_draw(random, 0.04, 0.2);
+    s.half = ptie_draw(random, 0.04, 0.2);
+    s.cell = s.half * ptie_draw(random, 2, 7);
+    s.fade = ptie_draw(random, 0.4, 2) * axes.end;
+    double beat = ptie_random_uniform(random, 0.02, 0.1) * sin(ptie_speed_draw(scene, random) * 8 * scene->time_s);
+    draw_blasts(&s, scene, random, &axes);
+    s.standoff *= (float)(1 + beat);
+    s.cell *= (float)(1 + beat);
+    ptie_paint(map, scene, &axes, at, &s);
+    return PTIE_OK;
+}
+
+/* Relative density rise inside a blast of radius 1. */
+typedef struct blast {
+    double jump;  /* rho2 / rho1 - 1 at the front */
+    double decay; /* of Friedlander's curve, in radii */
+    bool strong;  /* Sedov's: a dense shell around a near vacuum */
+} blast;
+
+static double blast_density(double r, const void *context) {
+    const blast *b = context;
+    if (r > 1) return 0;
+    if (b->strong) return (b->jump + 1) * pow(r, 7.5) - 1; /* r^(3 / (gamma - 1)), gamma = 1.4 */
+    double t = (1 - r) / b->decay;
+    return b->jump * exp(-t) * (1 - t);
+}
+
+typedef struct shell {
+    ptie_projection projection;
+    float radius, rad; /* rad: per unit of path, of the undisturbed air */
+} shell;
+
+static float shell_at(const void *context, float r) {
+    const shell *s = context;
+    return s->rad * s->radius * ptie_projection_at(&s->projection, r / s->radius);
+}
+
+static void draw_shells(float *map, const ptie_scene *scene, ptie_random *random, const ptie_axes *axes,
+                        double rad) {
+    double mach = ptie_random_uniform(random, 1.05, 2.5);
+    blast b = {.jump = ptie_shock_density(1.4, mach) - 1, .decay = ptie_random_uniform(random, 0.15, 0.6)};
+    b.strong = ptie_chance(random, 0.25);
+    if (b.strong) b.jump = ptie_shock_density(1.4, 20) - 1;
+    shell s = {.rad = (float)rad};
+    shock places = {0};
+    draw_blasts(&places, scene, random, axes);
+    ptie_projection_fill(&s.projection, blast_density, &b, 1);
+    for (int i = 0; i < (places.count + 1) / 2; i++) {
+        s.radius = places.radius[i];
+        ptie_stamp(map, scene, axes, places.x[i], places.y[i], s.radius, shell_at, &s);
+    }
+}
+
+/* A bow shock, its strength from the local slope; lattices belong to the jet. */
+typedef struct bow_shock {
+    float slope, standoff, tail, mach, rad, edge;
+} bow_shock;
+
+static float bow_at(const void *flow, float x, float y) {
+    const bow_shock *b = flow;
+    float aside = y / b->standoff, root = sqrtf(1 + aside * aside);
+    float d = x - b->standoff * (b->slope * (root - 1) - 1); /* behind the front, along the stream */
+    if (d < -4 * b->edge) return 0;
+    float tangent = b->slope * aside / root; /* dx / dy: normal Mach number is M cos(atan(dx / dy)) */
+    float normal2 = b->mach * b->mach / (1 + tangent * tangent);
+    if (normal2 <= 1) return 0;
+    float jump = 2.4f * normal2 / (0.4f * normal2 + 2) - 1;
+    return b->rad * jump * ptie_rise(d / b->edge) * expf(-fmaxf(d, 0) / b->tail);
+}
+
+static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
+    ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, 0.15, 0.4, 0.4);
+    double rad = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene) * ptie_ambient_refractivity();
+    bow_shock b = {.standoff = ptie_draw(random, 0.05, 0.2), .mach = ptie_draw(random, 1.3, 3)};
+    b.tail = b.standoff * ptie_draw(random, 1, 6);
+    b.slope = sqrtf(b.mach * b.mach - 1); /* far out it is a Mach wave: dx / dy = cot(mu) */
+    b.edge = 0.7f * axes.pixel;
+    b.rad = (float)rad * ptie_draw(random, 0.05, 0.4);
+    double beat = ptie_random_uniform(random, 0.02, 0.1) * sin(ptie_speed_draw(scene, random) * 8 * scene->time_s);
+    b.standoff *= (float)(1 + beat);
+    if (ptie_chance(random, 0.4)) {
+        ptie_paint(map, scene, &axes, bow_at, &b);
+        return PTIE_OK;
+    }
+    ptie_clear(map, scene);
+    draw_shells(map, scene, random, &axes, rad);
+    return PTIE_OK;
+}
+
+const ptie_morphology ptie_flow_shock = {"shock", "Shock front", parametric, physical};

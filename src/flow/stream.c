@@ -8,13 +8,13 @@
 static ptie_turbulence_params turbulence_draw(const ptie_stream *stream, const ptie_scene *scene,
                                               ptie_random *random, double length) {
     double width = (double)(stream->radius + stream->spread * 0.4f * (float)length);
-    double outer = width * ptie_random_uniform(random, 1, 3);
+    double outer = width * ptie_random_log_uniform(random, 2.5, 8);
     double period = fmax(1.4 * length, 3 * outer);
     return (ptie_turbulence_params){
         .key = ptie_key_draw(random),
         .period = period,
         .outer = outer,
-        .inner = outer * ptie_random_uniform(random, 0.06, 0.25),
+        .inner = outer * ptie_random_uniform(random, 0.04, 0.2),
         .drift = stream->speed * scene->time_s,
         .turns = ptie_random_uniform(random, 0.03, 0.12) * stream->speed / outer * scene->time_s,
         .cells = ptie_turbulence_cells(scene, period),
@@ -29,8 +29,8 @@ ptie_status ptie_stream_draw(ptie_stream *stream, const ptie_scene *scene, ptie_
         .folding = ptie_draw(random, ranges->folding_low, ranges->folding_high),
     };
     stream->onset = stream->radius * ptie_draw(random, 2, 12);
-    stream->sway = ptie_chance(random, 0.5) ? ptie_draw(random, 0.1, 0.8) : 0;
-    stream->sway_wave = ptie_draw(random, 0.4, 1.2) / stream->radius * 0.8f;
+    stream->sway = ptie_chance(random, 0.5) ? ptie_draw(random, 0.05, 0.35) : 0;
+    stream->sway_wave = ptie_draw(random, 0.2, 0.9) / stream->radius;
     stream->speed = ptie_speed_draw(scene, random);
     double sway_start = ptie_random_uniform(random, 0, TWO_PI);
     double turns = (double)stream->sway_wave * stream->speed * scene->time_s;
@@ -48,7 +48,7 @@ ptie_parcel ptie_stream_at(const ptie_stream *stream, float x, float y) {
     float width = stream->radius + stream->spread * (x > 0 ? x : 0);
     float fold = stream->folding * grown * width;
     float sway = stream->sway * grown * width;
-    float wave = sway > 0 ? sway * sinf(stream->sway_wave * x - stream->sway_phase) : 0;
+    float wave = sway > 0 ? sway * sinf(stream->sway_wave * x - stream->sway_phase + field[3]) : 0;
     float folded = x + fold * field[0];
     float local = stream->radius + stream->spread * (folded > 0 ? folded : 0);
     return (ptie_parcel){.x = folded,

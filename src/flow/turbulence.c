@@ -19,7 +19,7 @@ double ptie_von_karman(double frequency, double outer, double inner) {
 int32_t ptie_turbulence_cells(const ptie_scene *scene, double period) {
     double unit_px = scene->width < scene->height ? scene->width : scene->height;
     int32_t cells = 32;
-    while (cells < 1024 && cells * 3.0 < period * unit_px) cells *= 2;
+    while (cells < 1024 && cells * 4.5 < period * unit_px) cells *= 2;
     return cells;
 }
 
