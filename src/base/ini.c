@@ -172,25 +172,16 @@ ptie_status ptie_ini_read(void *target, const ptie_ini_key *keys, size_t count, 
     return PTIE_OK;
 }
 
-static const char *si_unit(ptie_quantity quantity) {
-    switch (quantity) {
-    case PTIE_LENGTH: return " m";
-    case PTIE_TIME: return " s";
-    case PTIE_RATE: return " Hz";
-    case PTIE_ANGLE: return " rad";
-    case PTIE_SPEED: return " m/s";
-    case PTIE_NUMBER: break;
-    }
-    return "";
-}
-
 static void print_field(ptie_text *out, const ptie_ini_key *key, const void *field) {
-    const char *unit = si_unit(key->quantity);
+    char low[48], high[48];
     switch (key->kind) {
-    case PTIE_INI_QUANTITY: ptie_text_append(out, "%.17g%s", *(const double *)field, unit); break;
+    case PTIE_INI_QUANTITY: 
+        ptie_text_append(out, "%s", ptie_print_quantity(low, *(const double *)field, key->quantity));
+        break;
     case PTIE_INI_RANGE: {
         const ptie_range *range = field;
-        ptie_text_append(out, "%.17g%s .. %.17g%s", range->low, unit, range->high, unit);
+        ptie_text_append(out, "%s .. %s", ptie_print_quantity(low, range->low, key->quantity),
+                         ptie_print_quantity(high, range->high, key->quantity));
         break;
     }
     case PTIE_INI_INTEGER: ptie_text_append(out, "%d", *(const int32_t *)field); break;

@@ -46,16 +46,21 @@ typedef struct unit {
     ptie_quantity quantity;
     const char *name;
     double factor;
+    bool read_only; /* understood, but not what ptie_print_quantity chooses */
 } unit;
 
 static const unit units[] = {
-    {PTIE_NUMBER, "", 1},       {PTIE_NUMBER, "%", 1e-2},    {PTIE_LENGTH, "nm", 1e-9},
-    {PTIE_LENGTH, "um", 1e-6},  {PTIE_LENGTH, "µm", 1e-6},   {PTIE_LENGTH, "mm", 1e-3},
-    {PTIE_LENGTH, "cm", 1e-2},  {PTIE_LENGTH, "m", 1},       {PTIE_TIME, "ns", 1e-9},
-    {PTIE_TIME, "us", 1e-6},    {PTIE_TIME, "µs", 1e-6},     {PTIE_TIME, "ms", 1e-3},
-    {PTIE_TIME, "s", 1},        {PTIE_RATE, "Hz", 1},        {PTIE_RATE, "kHz", 1e3},
-    {PTIE_RATE, "MHz", 1e6},    {PTIE_RATE, "fps", 1},       {PTIE_ANGLE, "rad", 1},
-    {PTIE_ANGLE, "mrad", 1e-3}, {PTIE_ANGLE, "deg", M_PI / 180}, {PTIE_SPEED, "m/s", 1},
+    {PTIE_NUMBER, "", 1, false},        {PTIE_NUMBER, "%", 1e-2, true},
+    {PTIE_LENGTH, "nm", 1e-9, false},   {PTIE_LENGTH, "um", 1e-6, false},
+    {PTIE_LENGTH, "µm", 1e-6, true},    {PTIE_LENGTH, "mm", 1e-3, false},
+    {PTIE_LENGTH, "cm", 1e-2, true},    {PTIE_LENGTH, "m", 1, false},
+    {PTIE_TIME, "ns", 1e-9, false},     {PTIE_TIME, "us", 1e-6, false},
+    {PTIE_TIME, "µs", 1e-6, true},      {PTIE_TIME, "ms", 1e-3, false},
+    {PTIE_TIME, "s", 1, false},         {PTIE_RATE, "Hz", 1, false},
+    {PTIE_RATE, "kHz", 1e3, false},     {PTIE_RATE, "MHz", 1e6, false},
+    {PTIE_RATE, "fps", 1, true},        {PTIE_ANGLE, "mrad", 1e-3, true},
+    {PTIE_ANGLE, "rad", 1, false},      {PTIE_ANGLE, "deg", M_PI / 180, true},
+    {PTIE_SPEED, "m/s", 1, false},
 };
 
 static const char *const expected[] = {
@@ -86,6 +91,28 @@ const char *ptie_parse_quantity(const char *text, ptie_quantity quantity, double
         return NULL;
     }
     return expected[quantity];
+}
+
+/* value / factor with the fewest digits that read back to exactly `value`; false if 17 do not. */
+static bool print_exactly(char text[32], double value, double factor) {
+    for (int digits = 1; digits <= 17; digits++) {
+        snprintf(text, 32, "%.*g", digits, value / factor);
+        if (strtod(text, NULL) * factor == value) return true;
+    }
+    return false;
+}
+
+const char *ptie_print_quantity(char text[48], double value, ptie_quantity quantity) {
+    size_t shortest = SIZE_MAX;
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        const unit *u = &units[i];
+        char number[32];
+        if (u->quantity != quantity || u->read_only) continue;
+        if (!print_exactly(number, value, u->factor) || strlen(number) >= shortest) continue;
+        shortest = strlen(number);
+        snprintf(text, 48, "%s%s%s", number, *u->name ? " " : "", u->name);
+    }
+    return text; /* the unit of factor 1 is always exact */
 }
 
 bool ptie_parse_integer(const char *text, int64_t low, int64_t high, int64_t *value) {

@@ -23,6 +23,10 @@ typedef enum ptie_quantity {
    unit (0 does not).  Returns NULL, or what was expected ("a length such as 532 nm or 10 mm"). */
 const char *ptie_parse_quantity(const char *text, ptie_quantity quantity, double *value);
 
+/* The shortest text that ptie_parse_quantity reads back to exactly `value`, in the unit a person would
+   choose: "532 nm", "0.6".  Returns `text`. */
+const char *ptie_print_quantity(char text[48], double value, ptie_quantity quantity);
+
 /* Parses a whole integer; false if `text` is anything else or out of range. */
 bool ptie_parse_integer(const char *text, int64_t low, int64_t high, int64_t *value);
 

@@ -95,6 +95,24 @@ static void quantities_need_their_unit(void **state) {
     assert_non_null(ptie_parse_quantity("", PTIE_NUMBER, &value));
 }
 
+static void quantities_print_as_people_write_them(void **state) {
+    (void)state;
+    char text[48];
+    assert_string_equal(ptie_print_quantity(text, 532e-9, PTIE_LENGTH), "532 nm");
+    assert_string_equal(ptie_print_quantity(text, 10e-3, PTIE_LENGTH), "10 mm");
+    assert_string_equal(ptie_print_quantity(text, -20e-6, PTIE_LENGTH), "-20 um");
+    assert_string_equal(ptie_print_quantity(text, 0, PTIE_LENGTH), "0 nm");
+    assert_string_equal(ptie_print_quantity(text, 0.6, PTIE_NUMBER), "0.6");
+    assert_string_equal(ptie_print_quantity(text, 25000, PTIE_RATE), "25 kHz");
+    ptie_random random;
+    ptie_random_init(&random, 1, PTIE_STREAM_FLOW, 0);
+    for (int i = 0; i < 1000; i++) {
+        double value = ptie_random_log_uniform(&random, 1e-12, 1e3), back;
+        assert_null(ptie_parse_quantity(ptie_print_quantity(text, value, PTIE_LENGTH), PTIE_LENGTH, &back));
+        assert_true(back == value);
+    }
+}
+
 typedef struct settings {
     double length_m;
     ptie_range noise;
@@ -200,6 +218,7 @@ int main(void) {
         cmocka_unit_test(normals_have_unit_moments),
         cmocka_unit_test(pool_runs_every_index_and_reports_the_lowest_failure),
         cmocka_unit_test(quantities_need_their_unit),
+        cmocka_unit_test(quantities_print_as_people_write_them),
         cmocka_unit_test(ini_reads_and_prints_a_table),
         cmocka_unit_test(ini_says_line_key_and_nearest_name),
         cmocka_unit_test(output_appears_whole_or_not_at_all),
