@@ -103,13 +103,16 @@ static bool print_exactly(char text[32], double value, double factor) {
 }
 
 const char *ptie_print_quantity(char text[48], double value, ptie_quantity quantity) {
-    size_t shortest = SIZE_MAX;
+    size_t best = SIZE_MAX;
     for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
         const unit *u = &units[i];
         char number[32];
         if (u->quantity != quantity || u->read_only) continue;
-        if (!print_exactly(number, value, u->factor) || strlen(number) >= shortest) continue;
-        shortest = strlen(number);
+        if (!print_exactly(number, value, u->factor)) continue;
+        /* Few characters, but a number below 1 only if no unit fits better. */
+        size_t cost = strlen(number) + (fabs(value) < u->factor ? sizeof number : 0);
+        if (cost >= best) continue;
+        best = cost;
         snprintf(text, 48, "%s%s%s", number, *u->name ? " " : "", u->name);
     }
     return text; /* the unit of factor 1 is always exact */
