@@ -42,25 +42,26 @@ const char *ptie_nearest_word(const char *word, const char *const *words) {
     return best;
 }
 
+/* value = number * factor / divisor: 20 um = 20 / 1e6 rounds once, to the double that 20e-6 is. */
 typedef struct unit {
     ptie_quantity quantity;
     const char *name;
-    double factor;
+    double factor, divisor;
     bool read_only; /* understood, but not what ptie_print_quantity chooses */
 } unit;
 
 static const unit units[] = {
-    {PTIE_NUMBER, "", 1, false},        {PTIE_NUMBER, "%", 1e-2, true},
-    {PTIE_LENGTH, "nm", 1e-9, false},   {PTIE_LENGTH, "um", 1e-6, false},
-    {PTIE_LENGTH, "µm", 1e-6, true},    {PTIE_LENGTH, "mm", 1e-3, false},
-    {PTIE_LENGTH, "cm", 1e-2, true},    {PTIE_LENGTH, "m", 1, false},
-    {PTIE_TIME, "ns", 1e-9, false},     {PTIE_TIME, "us", 1e-6, false},
-    {PTIE_TIME, "µs", 1e-6, true},      {PTIE_TIME, "ms", 1e-3, false},
-    {PTIE_TIME, "s", 1, false},         {PTIE_RATE, "Hz", 1, false},
-    {PTIE_RATE, "kHz", 1e3, false},     {PTIE_RATE, "MHz", 1e6, false},
-    {PTIE_RATE, "fps", 1, true},        {PTIE_ANGLE, "mrad", 1e-3, true},
-    {PTIE_ANGLE, "rad", 1, false},      {PTIE_ANGLE, "deg", M_PI / 180, true},
-    {PTIE_SPEED, "m/s", 1, false},
+    {PTIE_NUMBER, "", 1, 1, false},    {PTIE_NUMBER, "%", 1, 1e2, true},
+    {PTIE_LENGTH, "nm", 1, 1e9, false}, {PTIE_LENGTH, "um", 1, 1e6, false},
+    {PTIE_LENGTH, "µm", 1, 1e6, true}, {PTIE_LENGTH, "mm", 1, 1e3, false},
+    {PTIE_LENGTH, "cm", 1, 1e2, true}, {PTIE_LENGTH, "m", 1, 1, false},
+    {PTIE_TIME, "ns", 1, 1e9, false},  {PTIE_TIME, "us", 1, 1e6, false},
+    {PTIE_TIME, "µs", 1, 1e6, true},   {PTIE_TIME, "ms", 1, 1e3, false},
+    {PTIE_TIME, "s", 1, 1, false},     {PTIE_RATE, "Hz", 1, 1, false},
+    {PTIE_RATE, "kHz", 1e3, 1, false}, {PTIE_RATE, "MHz", 1e6, 1, false},
+    {PTIE_RATE, "fps", 1, 1, true},    {PTIE_ANGLE, "mrad", 1, 1e3, true},
+    {PTIE_ANGLE, "rad", 1, 1, false},  {PTIE_ANGLE, "deg", M_PI, 180, true},
+    {PTIE_SPEED, "m/s", 1, 1, false},
 };
 
 static const char *const expected[] = {
@@ -87,17 +88,17 @@ const char *ptie_parse_quantity(const char *text, ptie_quantity quantity, double
         const unit *u = &units[i];
         if (u->quantity != quantity || strlen(u->name) != length) continue;
         if (memcmp(u->name, end, length) != 0) continue;
-        *value = number * u->factor;
+        *value = number * u->factor / u->divisor;
         return NULL;
     }
     return expected[quantity];
 }
 
-/* value / factor with the fewest digits that read back to exactly `value`; false if 17 do not. */
-static bool print_exactly(char text[32], double value, double factor) {
+/* `value` in a unit, with the fewest digits that read back exactly; false if 17 do not. */
+static bool print_exactly(char text[32], double value, const unit *u) {
     for (int digits = 1; digits <= 17; digits++) {
-        snprintf(text, 32, "%.*g", digits, value / factor);
-        if (strtod(text, NULL) * factor == value) return true;
+        snprintf(text, 32, "%.*g", digits, value / u->factor * u->divisor);
+        if (strtod(text, NULL) * u->factor / u->divisor == value) return true;
     }
     return false;
 }
@@ -108,9 +109,9 @@ const char *ptie_print_quantity(char text[48], double value, ptie_quantity quant
         const unit *u = &units[i];
         char number[32];
         if (u->quantity != quantity || u->read_only) continue;
-        if (!print_exactly(number, value, u->factor)) continue;
+        if (!print_exactly(number, value, u)) continue;
         /* Few characters, but a number below 1 only if no unit fits better. */
-        size_t cost = strlen(number) + (fabs(value) < u->factor ? sizeof number : 0);
+        size_t cost = strlen(number) + (fabs(value) < u->factor / u->divisor ? sizeof number : 0);
         if (cost >= best) continue;
         best = cost;
         snprintf(text, 48, "%s%s%s", number, *u->name ? " " : "", u->name);
