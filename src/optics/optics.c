@@ -3,6 +3,7 @@
 #include "optics/optics.h"
 
 #include <assert.h>
+#include <math.h>
 
 #include "base/image.h"
 #include "base/memory.h"
@@ -95,6 +96,18 @@ static ptie_status constant_intensity(float *value, const float *i_zero,
     return PTIE_OK;
 }
 
+/* I+- = I0 (1 +- signal).  The darker plane is counted from the rounded brighter one: their difference,
+   which carries the phase, is then rounded once and at the finer step (docs/math.md M9). */
+static void set_planes(float *i_plus, float *i_minus, const float *signal, double intensity,
+                       size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const double step = intensity * fabs((double)signal[i]);
+        const float bright = (float)(intensity + step), dark = (float)((double)bright - 2 * step);
+        i_plus[i] = signal[i] < 0 ? dark : bright;
+        i_minus[i] = signal[i] < 0 ? bright : dark;
+    }
+}
+
 static ptie_status linear_defocus(const ptie_optics *optics, float *i_plus, float *i_minus,
                                   const float *phase_rad, const float *i_zero,
                                   const ptie_optics_work *work) {
@@ -105,11 +118,8 @@ static ptie_status linear_defocus(const ptie_optics *optics, float *i_plus, floa
         ptie_linear_signal_spectral(optics, phase_rad, work);
     else
         ptie_linear_signal_stencil(optics, phase_rad, work);
-    const size_t pixels = (size_t)p->width_px * (size_t)p->height_px;
-    for (size_t i = 0; i < pixels; i++) {
-        i_plus[i] = intensity * (1 + work->image[i]);
-        i_minus[i] = intensity * (1 - work->image[i]);
-    }
+    set_planes(i_plus, i_minus, work->image, (double)intensity,
+               (size_t)p->width_px * (size_t)p->height_px);
     return PTIE_OK;
 }
 

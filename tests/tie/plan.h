@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What the solver tests share: a solver with its scratch, forward images, and test fields. */
+#ifndef PTIE_TESTS_TIE_PLAN_H
+#define PTIE_TESTS_TIE_PLAN_H
+
+#include "support/support.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "base/random.h"
+#include "optics/optics.h"
+#include "tie/solver.h"
+
+#define PI 3.14159265358979323846
+
+static inline ptie_solver_params solver_params(ptie_boundary boundary, int32_t w, int32_t h) {
+    ptie_solver_params p;
+    ptie_solver_params_init(&p);
+    p.width_px = w, p.height_px = h, p.boundary = boundary;
+    return p;
+}
+
+static inline float *image_of(int32_t w, int32_t h) {
+    float *image = calloc((size_t)w * (size_t)h, sizeof *image);
+    assert_non_null(image);
+    return image;
+}
+
+/* One run of a plan made for it. */
+static inline ptie_status solve(const ptie_solver_params *params, float *phase, const float *plus,
+                                const float *zero, const float *minus) {
+    ptie_solver *solver;
+    assert_ok(ptie_tie_plan(&solver, params));
+    void *scratch = ptie_alloc(ptie_tie_scratch(solver), 1);
+    assert_non_null(scratch);
+    const ptie_status status = ptie_tie_solve(solver, phase, plus, zero, minus, scratch);
+    ptie_free(scratch);
+    ptie_solver_free(solver);
+    return status;
+}
+
+/* Linear TIE images at +-defocus_plus_m of the params. */
+static inline void forward(const ptie_solver_params *params, float *plus, float *minus,
+                           const float *phase, ptie_propagation propagation) {
+    ptie_optics_params p;
+    ptie_optics_params_init(&p);
+    p.width_px = params->width_px, p.height_px = params->height_px, p.pixel_m = params->pixel_m;
+    p.wavelength_m = params->wavelength_m, p.defocus_m = params->defocus_plus_m;
+    p.boundary = params->boundary, p.propagation = propagation;
+    ptie_optics *optics;
+    assert_ok(ptie_optics_plan(&optics, &p));
+    void *scratch = ptie_alloc(ptie_optics_scratch(optics), 1);
+    assert_ok(ptie_optics_defocus(optics, plus, minus, phase, NULL, scratch));
+    ptie_free(scratch);
+    ptie_optics_free(optics);
+}
+
+/* Zero-mean, band-limited to a quarter of Nyquist (beyond, a linear signal exceeds the light): twelve modes
+   of the boundary, about 1 rad in all. */
+static inline void set_band_limited(float *phase, const ptie_solver_params *params, uint64_t which) {
+    const int32_t w = params->width_px, h = params->height_px;
+    const int32_t step = params->boundary == PTIE_MIRROR ? 1 : 2; /* half-waves across the frame */
+    ptie_random random;
+    ptie_random_init(&random, 3, PTIE_STREAM_TEXTURE, which);
+    memset(phase, 0, (size_t)w * (size_t)h * sizeof *phase);
+    for (int mode = 0; mode < 12; mode++) {
+        const int32_t i = step * ptie_random_integer(&random, 0, w / 4 / step);
+        const int32_t j = step * ptie_random_integer(&random, 1, h / 4 / step);
+        const double amplitude = ptie_random_uniform(&random, -0.6, 0.6);
+        const double turn = step == 2 ? ptie_random_uniform(&random, 0, 2 * PI) : 0;
+        for (int32_t y = 0; y < h; y++)
+            for (int32_t x = 0; x < w; x++)
+                phase[y * w + x] += (float)(amplitude * cos(PI * i * (x + 0.5) / w + turn) *
+                                            cos(PI * j * (y + 0.5) / h + turn));
+    }
+}
+
+#endif
