@@ -94,13 +94,18 @@ const char *ptie_parse_quantity(const char *text, ptie_quantity quantity, double
     return expected[quantity];
 }
 
-/* `value` in a unit, with the fewest digits that read back exactly; false if 17 do not. */
+/* The shortest text of `value` in a unit that reads back exactly; false if there is none. */
 static bool print_exactly(char text[32], double value, const unit *u) {
+    bool found = false;
     for (int digits = 1; digits <= 17; digits++) {
-        snprintf(text, 32, "%.*g", digits, value / u->factor * u->divisor);
-        if (strtod(text, NULL) * u->factor / u->divisor == value) return true;
+        char trial[32]; /* "2e+01" has fewer digits than "20" and is longer */
+        snprintf(trial, sizeof trial, "%.*g", digits, value / u->factor * u->divisor);
+        if (strtod(trial, NULL) * u->factor / u->divisor != value) continue;
+        if (found && strlen(trial) >= strlen(text)) continue;
+        snprintf(text, 32, "%s", trial);
+        found = true;
     }
-    return false;
+    return found;
 }
 
 const char *ptie_print_quantity(char text[48], double value, ptie_quantity quantity) {
