@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "kernel/engine.h"
 
+#include <assert.h>
+
 #include "kernel/kernel.h"
 
 extern const ptie_kernels ptie_kernels_scalar;
@@ -22,8 +24,8 @@ const ptie_kernels *ptie_kernels_of(ptie_cpu_level level) {
 ptie_status ptie_engine_start(ptie_engine *engine, int32_t threads, const char *cpu) {
     *engine = (ptie_engine){0};
     PTIE_TRY(ptie_cpu_choose(&engine->level, cpu));
-    if (!ptie_kernels_of(engine->level)) engine->level = PTIE_CPU_SCALAR; /* a build without them */
     engine->kernels = ptie_kernels_of(engine->level);
+    assert(engine->kernels); /* where higher levels can be detected, they are built */
     return ptie_pool_create(&engine->pool, threads);
 }
 

@@ -7,6 +7,8 @@
  * 16 (AVX2) the same block is done in two halves of 4 x 2.  The gradient of the weights keeps OUT output channels
  * times the 3 taps of a row in registers, each a vector that is summed at the end of the band.
  */
+#include <string.h>
+
 #include "kernel/vec/vec.h"
 
 #if PTIE_VEC_WIDTH == 16
@@ -14,7 +16,13 @@ enum { OUT = 8 };
 #else
 enum { OUT = 4 };
 #endif
-enum { PIXELS = 2, TAPS = 3 };
+enum { PIXELS = 2 };
+
+/* What lies inside the image of a block at its edge. */
+static void store_rest(float *out, ptrdiff_t plane, const float *block, int32_t channels, int32_t width) {
+    for (int32_t o = 0; o < channels; o++)
+        memcpy(out + o * plane, block + o * PIXELS * VEC_WIDTH, (size_t)width * sizeof *out);
+}
 
 /* OUT channels x (vectors * VEC_WIDTH) pixels at one place.  `in`: the pixel of channel 0; `weights`: of the
    first output channel; stores `channels` x `width`. */
@@ -36,13 +44,14 @@ INLINE void convolve_block(float *out, const ptie_map *out_map, const float *in,
                 }
             }
     }
-    UNROLL for (int o = 0; o < OUT; o++) {
-        if (o >= channels) break;
-        UNROLL for (int v = 0; v < vectors; v++) {
-            const vf value = relu ? vf_positive(sum[o][v]) : sum[o][v];
-            vf_store_first(out + o * out_map->plane + v * VEC_WIDTH, value, width - v * VEC_WIDTH);
-        }
-    }
+    const bool whole = channels == OUT && width >= vectors * VEC_WIDTH;
+    float rest[OUT * PIXELS * VEC_WIDTH];
+    float *to = whole ? out : rest;
+    const ptrdiff_t step = whole ? out_map->plane : PIXELS * VEC_WIDTH;
+    UNROLL for (int o = 0; o < OUT; o++)
+        UNROLL for (int v = 0; v < vectors; v++)
+            vf_store(to + o * step + v * VEC_WIDTH, relu ? vf_positive(sum[o][v]) : sum[o][v]);
+    if (!whole) store_rest(out, out_map->plane, rest, channels, smaller(width, vectors * VEC_WIDTH));
 }
 
 static void convolve_row(const ptie_map *out, const ptie_map *in, const float *weights, const float *bias,
@@ -69,40 +78,35 @@ void VEC(conv3x3)(const ptie_map *out, const ptie_map *in, const float *weights,
         }
 }
 
-/* Adds the gradient of the 3 taps of one row of the window, for OUT output channels and one input channel.
-   Channels that do not exist repeat the last one and are not stored.  Lanes beyond the width read the zero halo
-   of the gradient, or are masked. */
+/* Adds one vector of pixels: the gradients of OUT channels times the input under each tap. */
+INLINE void weigh_taps(vf sum[OUT][3], const float *const row[OUT], const float *in, int32_t x,
+                       int32_t width) {
+    vf pixel[3];
+    UNROLL for (int k = 0; k < 3; k++) pixel[k] = vf_load(in + x + k - 1);
+    UNROLL for (int o = 0; o < OUT; o++) {
+        const vf g = vf_hold(vf_first(vf_load(row[o] + x), width - x));
+        UNROLL for (int k = 0; k < 3; k++) sum[o][k] += g * pixel[k];
+    }
+}
+
+/* Adds the gradient of OUT x 3 weights: one input channel, one row of the window; `in` is the first row under
+   it.  Channels that do not exist repeat the last one and are not stored. */
 static void weights_block(double *grad, ptrdiff_t grad_step, const ptie_map *out_grad, int32_t o,
                           const float *in, ptrdiff_t in_row) {
     const int32_t channels = smaller(out_grad->channels - o, OUT);
-    const float *g[OUT];
-    for (int c = 0; c < OUT; c++) g[c] = row_of(out_grad, o + smaller(c, channels - 1), 0);
-    vf sum[OUT][TAPS] = {{{0}}};
+    const float *row[OUT];
+    for (int c = 0; c < OUT; c++) row[c] = row_of(out_grad, o + smaller(c, channels - 1), 0);
+    vf sum[OUT][3] = {{{0}}};
     for (int32_t y = 0; y < out_grad->height; y++, in += in_row) {
-        const ptrdiff_t row = y * out_grad->row;
         int32_t x = 0;
-        for (; x + VEC_WIDTH <= out_grad->width; x += VEC_WIDTH) {
-            const vf left = vf_load(in + x - 1), middle = vf_load(in + x), right = vf_load(in + x + 1);
-            UNROLL for (int c = 0; c < OUT; c++) {
-                const vf value = vf_load(g[c] + row + x);
-                sum[c][0] += value * left;
-                sum[c][1] += value * middle;
-                sum[c][2] += value * right;
-            }
-        }
-        if (x == out_grad->width) continue;
-        const vf left = vf_load(in + x - 1), middle = vf_load(in + x), right = vf_load(in + x + 1);
-        UNROLL for (int c = 0; c < OUT; c++) {
-            const vf value = vf_first(vf_load(g[c] + row + x), out_grad->width - x);
-            sum[c][0] += value * left;
-            sum[c][1] += value * middle;
-            sum[c][2] += value * right;
-        }
+        for (; x + VEC_WIDTH <= out_grad->width; x += VEC_WIDTH)
+            weigh_taps(sum, row, in, x, x + VEC_WIDTH);
+        if (x < out_grad->width) weigh_taps(sum, row, in, x, out_grad->width);
+        for (int c = 0; c < OUT; c++) row[c] += out_grad->row;
     }
-    UNROLL for (int c = 0; c < OUT; c++) {
-        if (c >= channels) break;
-        UNROLL for (int k = 0; k < TAPS; k++) grad[c * grad_step + k] += vf_sum(sum[c][k]);
-    }
+    UNROLL for (int c = 0; c < OUT; c++)
+        UNROLL for (int k = 0; k < 3; k++)
+            if (c < channels) grad[c * grad_step + k] += vf_sum(sum[c][k]);
 }
 
 void VEC(conv3x3_weights)(double *grad, const ptie_map *out_grad, const ptie_map *in) {

@@ -37,17 +37,21 @@ INLINE void vf_store(float *to, vf value) {
     *(vf_anywhere *)(void *)to = value;
 }
 
-/* The first `count` lanes; at most VEC_WIDTH are stored. */
-INLINE void vf_store_first(float *to, vf value, int32_t count) {
-    if (count >= VEC_WIDTH) {
-        vf_store(to, value);
-        return;
-    }
+/* The end of a row; out of line, to leave the registers of the loop alone. */
+static __attribute__((noinline, unused)) void vf_store_rest(float *to, vf value, int32_t count) {
     for (int32_t i = 0; i < count; i++) to[i] = value[i];
 }
 
+/* The first `count` lanes; at most VEC_WIDTH are stored. */
+INLINE void vf_store_first(float *to, vf value, int32_t count) {
+    if (count >= VEC_WIDTH)
+        vf_store(to, value);
+    else
+        vf_store_rest(to, value, count);
+}
+
 INLINE vf vf_splat(float value) {
-    return (vf){0} + value;
+    return value - (vf){0}; /* x - 0 is x even for x = -0, so nothing is computed */
 }
 
 /* Bitwise choice: mask lanes are all ones or all zeros. */
@@ -70,10 +74,25 @@ INLINE vf vf_first(vf value, int32_t count) {
     return (vf)((lane < count) & (vi)value);
 }
 
+/* Keeps a value in a register where the compiler would rather load it again at every use. */
+INLINE vf vf_hold(vf value) {
+    __asm__("" : "+v"(value));
+    return value;
+}
+
+/* Sum of the lanes: halves in single precision down to four, then double. */
 INLINE double vf_sum(vf value) {
-    double sum = 0;
-    UNROLL for (int i = 0; i < VEC_WIDTH; i++) sum += (double)value[i];
-    return sum;
+#if PTIE_VEC_WIDTH == 16
+    typedef float half __attribute__((vector_size(32)));
+    const half eight = __builtin_shufflevector(value, value, 0, 1, 2, 3, 4, 5, 6, 7) +
+                       __builtin_shufflevector(value, value, 8, 9, 10, 11, 12, 13, 14, 15);
+#else
+    const vf eight = value;
+#endif
+    typedef float quarter __attribute__((vector_size(16)));
+    const quarter four = __builtin_shufflevector(eight, eight, 0, 1, 2, 3) +
+                         __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
+    return ((double)four[0] + (double)four[1]) + ((double)four[2] + (double)four[3]);
 }
 
 /* Even and odd elements of the 2 * VEC_WIDTH floats (a, b), and back. */
