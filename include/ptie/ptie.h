@@ -29,8 +29,10 @@
 #include <ptie/optics.h>
 #include <ptie/recording.h>
 #include <ptie/run.h>
+#include <ptie/simulate.h>
 #include <ptie/solver.h>
 #include <ptie/status.h>
+#include <ptie/text.h>
 #include <ptie/train.h>
 #include <ptie/version.h>
 

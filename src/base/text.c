@@ -57,7 +57,8 @@ static const unit units[] = {
     {PTIE_LENGTH, "cm", 1, 1e2, true}, {PTIE_LENGTH, "m", 1, 1, false},
     {PTIE_TIME, "ns", 1, 1e9, false},  {PTIE_TIME, "us", 1, 1e6, false},
     {PTIE_TIME, "µs", 1, 1e6, true},   {PTIE_TIME, "ms", 1, 1e3, false},
-    {PTIE_TIME, "s", 1, 1, false},     {PTIE_RATE, "Hz", 1, 1, false},
+    {PTIE_TIME, "s", 1, 1, false},     {PTIE_TIME, "min", 60, 1, true},
+    {PTIE_TIME, "h", 3600, 1, true},   {PTIE_RATE, "Hz", 1, 1, false},
     {PTIE_RATE, "kHz", 1e3, 1, false}, {PTIE_RATE, "MHz", 1e6, 1, false},
     {PTIE_RATE, "fps", 1, 1, true},    {PTIE_ANGLE, "mrad", 1, 1e3, true},
     {PTIE_ANGLE, "rad", 1, 1, false},  {PTIE_ANGLE, "deg", M_PI, 180, true},
@@ -108,7 +109,7 @@ static bool print_exactly(char text[32], double value, const unit *u) {
     return found;
 }
 
-const char *ptie_print_quantity(char text[48], double value, ptie_quantity quantity) {
+const char *ptie_print_quantity(char text[PTIE_QUANTITY_BYTES], double value, ptie_quantity quantity) {
     size_t best = SIZE_MAX;
     for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
         const unit *u = &units[i];
@@ -119,7 +120,7 @@ const char *ptie_print_quantity(char text[48], double value, ptie_quantity quant
         size_t cost = strlen(number) + (fabs(value) < u->factor / u->divisor ? sizeof number : 0);
         if (cost >= best) continue;
         best = cost;
-        snprintf(text, 48, "%s%s%s", number, *u->name ? " " : "", u->name);
+        snprintf(text, PTIE_QUANTITY_BYTES, "%s%s%s", number, *u->name ? " " : "", u->name);
     }
     return text; /* the unit of factor 1 is always exact */
 }

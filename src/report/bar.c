@@ -37,13 +37,13 @@ static void gradient(cairo_t *cr, ptie_colormap map, double x0, double y0, doubl
     cairo_stroke(cr);
 }
 
-static double share_of(ptie_span span, double value) {
+static double share_of(ptie_limits span, double value) {
     return (value - span.low) / (span.high - span.low);
 }
 
 /* The last label carries the power of ten and the unit; labels stay within the bar.  False when two come
    closer than a space. */
-static bool place(label_row *out, cairo_t *cr, const ptie_ticks *ticks, ptie_span span, const char *unit,
+static bool place(label_row *out, cairo_t *cr, const ptie_ticks *ticks, ptie_limits span, const char *unit,
                   double length) {
     double taken = -INFINITY;
     for (int32_t i = 0; i < ticks->count; i++) {
@@ -63,7 +63,7 @@ static bool place(label_row *out, cairo_t *cr, const ptie_ticks *ticks, ptie_spa
 }
 
 /* As many ticks as their labels have room for, but two at least. */
-static void choose_ticks(ptie_ticks *ticks, label_row *labels, cairo_t *cr, ptie_span span,
+static void choose_ticks(ptie_ticks *ticks, label_row *labels, cairo_t *cr, ptie_limits span,
                          const char *unit, double length) {
     for (int32_t most = 7; most >= 3; most--) {
         ptie_linear_ticks(ticks, span.low, span.high, most, false);
@@ -75,7 +75,7 @@ static void choose_ticks(ptie_ticks *ticks, label_row *labels, cairo_t *cr, ptie
     (void)place(labels, cr, ticks, span, unit, length);
 }
 
-void ptie_draw_bar_below(cairo_t *cr, ptie_colormap map, ptie_span span, const char *unit, double x,
+void ptie_draw_bar_below(cairo_t *cr, ptie_colormap map, ptie_limits span, const char *unit, double x,
                          double y, double length) {
     ptie_ticks ticks;
     label_row labels;
@@ -91,7 +91,7 @@ void ptie_draw_bar_below(cairo_t *cr, ptie_colormap map, ptie_span span, const c
     }
 }
 
-void ptie_draw_bar_beside(cairo_t *cr, ptie_colormap map, ptie_span span, const char *unit, double x,
+void ptie_draw_bar_beside(cairo_t *cr, ptie_colormap map, ptie_limits span, const char *unit, double x,
                           double y, double length) {
     ptie_ticks ticks;
     char text[PTIE_LABEL_BYTES];

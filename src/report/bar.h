@@ -12,15 +12,15 @@
 #define PTIE_BAR_BESIDE 38.0
 
 /* The values at the two ends of a colour map. */
-typedef struct ptie_span {
+typedef struct ptie_limits {
     double low, high;
-} ptie_span;
+} ptie_limits;
 
 /* From (x, y) to the right, labels below.  `unit` may be NULL. */
-void ptie_draw_bar_below(cairo_t *cr, ptie_colormap map, ptie_span span, const char *unit, double x,
+void ptie_draw_bar_below(cairo_t *cr, ptie_colormap map, ptie_limits span, const char *unit, double x,
                          double y, double length);
 /* From (x, y) down, highest value first, labels to the right and the unit above. */
-void ptie_draw_bar_beside(cairo_t *cr, ptie_colormap map, ptie_span span, const char *unit, double x,
+void ptie_draw_bar_beside(cairo_t *cr, ptie_colormap map, ptie_limits span, const char *unit, double x,
                           double y, double length);
 
 #endif

@@ -18,14 +18,14 @@ static int ascending(const void *a, const void *b) {
 }
 
 /* The odd stride visits all columns of a map whose width is a power of two. */
-static ptie_status quantiles(ptie_span *span, const ptie_panel *panel) {
+static ptie_status quantiles(ptie_limits *span, const ptie_panel *panel) {
     size_t count = (size_t)panel->width_px * (size_t)panel->height_px, kept = 0;
     size_t stride = count > MOST_VALUES ? count / MOST_VALUES | 1 : 1;
     float *values;
     PTIE_TRY(ptie_alloc_status(&values, count / stride + 1, sizeof *values, "figure"));
     for (size_t i = 0; i < count; i += stride)
         if (isfinite(panel->data[i])) values[kept++] = panel->data[i];
-    *span = (ptie_span){0};
+    *span = (ptie_limits){0};
     if (kept > 0) {
         qsort(values, kept, sizeof *values, ascending);
         double last = (double)(kept - 1);
@@ -36,13 +36,13 @@ static ptie_status quantiles(ptie_span *span, const ptie_panel *panel) {
     return PTIE_OK;
 }
 
-ptie_status ptie_panel_span(ptie_span *span, const ptie_panel *panel) {
-    *span = (ptie_span){panel->low, panel->high};
+ptie_status ptie_panel_span(ptie_limits *span, const ptie_panel *panel) {
+    *span = (ptie_limits){panel->low, panel->high};
     if (panel->data && !(span->low < span->high)) PTIE_TRY(quantiles(span, panel));
     ptie_widen(&span->low, &span->high);
     if (panel->colormap == PTIE_DIVERGING) {
         double limit = fmax(fabs(span->low), fabs(span->high));
-        *span = (ptie_span){-limit, limit};
+        *span = (ptie_limits){-limit, limit};
     }
     return PTIE_OK;
 }
@@ -69,7 +69,7 @@ static void covered(double *from, double *to, int32_t i, int32_t pixels, int32_t
 }
 
 /* The colours of the map on width x height pixels. */
-static cairo_surface_t *coloured(const ptie_panel *panel, ptie_span span, int32_t width,
+static cairo_surface_t *coloured(const ptie_panel *panel, ptie_limits span, int32_t width,
                                  int32_t height) {
     cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
     unsigned char *data = cairo_image_surface_get_data(image);
@@ -116,7 +116,7 @@ static void length_text(char text[PTIE_LABEL_BYTES], double length_m) {
 }
 
 /* Black or white, whichever the lower left corner of the map is not. */
-static double ink_for(const ptie_panel *panel, ptie_span span) {
+static double ink_for(const ptie_panel *panel, ptie_limits span) {
     double value = area_mean(panel, 0, ceil(panel->width_px / 3.0), floor(panel->height_px * 0.8),
                              panel->height_px);
     uint32_t rgb = ptie_colour(panel->colormap, (value - span.low) / (span.high - span.low));
@@ -135,7 +135,7 @@ static void fill_with_rim(cairo_t *cr, double ink) {
 }
 
 /* A round length of at most a third of the width, in the lower left corner. */
-static void draw_scale_bar(cairo_t *cr, const ptie_panel *panel, ptie_span span, cairo_rectangle_t box) {
+static void draw_scale_bar(cairo_t *cr, const ptie_panel *panel, ptie_limits span, cairo_rectangle_t box) {
     double length_m = ptie_round_down(panel->pixel_m * panel->width_px / 3);
     double length = box.width * length_m / (panel->pixel_m * panel->width_px);
     double x = box.x + 4, y = box.y + box.height - 5.5, ink = ink_for(panel, span);
@@ -149,7 +149,7 @@ static void draw_scale_bar(cairo_t *cr, const ptie_panel *panel, ptie_span span,
     fill_with_rim(cr, ink);
 }
 
-void ptie_draw_map(cairo_t *cr, const ptie_panel *panel, ptie_span span, cairo_rectangle_t box) {
+void ptie_draw_map(cairo_t *cr, const ptie_panel *panel, ptie_limits span, cairo_rectangle_t box) {
     cairo_surface_t *image = coloured(panel, span, printed_pixels(box.width), printed_pixels(box.height));
     draw_image(cr, image, box);
     cairo_surface_destroy(image);

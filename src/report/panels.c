@@ -18,7 +18,7 @@
 
 typedef struct layout {
     const ptie_panels *figure;
-    ptie_span *spans; /* one per panel */
+    ptie_limits *spans; /* one per panel */
     bool beside;      /* one bar per row */
     double width, left, column;
 } layout;
@@ -27,7 +27,7 @@ static const ptie_panel *panel_at(const layout *l, int32_t row, int32_t column) 
     return &l->figure->panels[row * l->figure->columns + column];
 }
 
-static ptie_span span_at(const layout *l, int32_t row, int32_t column) {
+static ptie_limits span_at(const layout *l, int32_t row, int32_t column) {
     return l->spans[row * l->figure->columns + column];
 }
 
@@ -46,7 +46,7 @@ static bool row_shares_bar(const layout *l, int32_t row) {
     const ptie_panel *first = first_of_row(l, row);
     for (int32_t c = 0; first && c < l->figure->columns; c++) {
         const ptie_panel *panel = panel_at(l, row, c);
-        ptie_span a = l->spans[first - l->figure->panels], b = span_at(l, row, c);
+        ptie_limits a = l->spans[first - l->figure->panels], b = span_at(l, row, c);
         if (panel->data && (panel->colormap != first->colormap || a.low != b.low ||
                             a.high != b.high || !same_text(panel->unit, first->unit)))
             return false;
@@ -102,7 +102,7 @@ static double figure_height(const layout *l) {
 static void draw_panel(cairo_t *cr, const layout *l, int32_t row, int32_t column, double y) {
     const ptie_panel *panel = panel_at(l, row, column);
     if (!panel->data) return;
-    ptie_span span = span_at(l, row, column);
+    ptie_limits span = span_at(l, row, column);
     cairo_rectangle_t box = map_box(l, panel, column, y);
     ptie_set_type(cr, PTIE_NORMAL, false);
     ptie_text_within(cr, panel->title, box.x + box.width / 2, y - 3.5, 0.5, l->column);

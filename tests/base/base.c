@@ -89,6 +89,8 @@ static void quantities_need_their_unit(void **state) {
     assert_null(ptie_parse_quantity("0", PTIE_LENGTH, &value));
     assert_null(ptie_parse_quantity("2.5 %", PTIE_NUMBER, &value));
     assert_near(value, 0.025, 1e-17);
+    assert_null(ptie_parse_quantity("1.5 h", PTIE_TIME, &value));
+    assert_near(value, 5400, 1e-9);
     assert_non_null(ptie_parse_quantity("532", PTIE_LENGTH, &value));
     assert_non_null(ptie_parse_quantity("532 s", PTIE_LENGTH, &value));
     assert_non_null(ptie_parse_quantity("nan m", PTIE_LENGTH, &value));

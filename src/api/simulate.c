@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* <ptie/simulate.h>: arguments checked, then inward. */
+#include <ptie/simulate.h>
+
+#include "api/context.h"
+#include "api/params.h"
+#include "run/simulate.h"
+
+#define MOST_FRAMES 100000000
+
+void ptie_simulate_params_init(ptie_simulate_params *params) {
+    ptie_optics_params optics;
+    ptie_optics_params_init(&optics);
+    *params = (ptie_simulate_params){
+        .struct_size = sizeof *params,
+        .frames = 20,
+        .frame_rate_hz = 25e3,
+        .defocus_m = optics.defocus_m,
+        .boundary = optics.boundary,
+        .propagation = optics.propagation,
+        .noise = 0.05,
+    };
+    ptie_flow_params_init(&params->flow);
+}
+
+/* What the flow and the optics do not check themselves. */
+static ptie_status check(const ptie_simulate_params *p, const char *where) {
+    PTIE_TRY(ptie_check_pointer(p->output, where, "output"));
+    PTIE_TRY(ptie_check_integer(p->frames, 1, MOST_FRAMES, where, "frames"));
+    PTIE_TRY(ptie_check_positive(p->frame_rate_hz, where, "frame_rate_hz"));
+    PTIE_TRY(ptie_check_number(p->amplitude_rad, 0, 1e6, where, "amplitude_rad"));
+    PTIE_TRY(ptie_check_number(p->noise, 0, 10, where, "noise"));
+    PTIE_TRY(ptie_check_number(p->defocus_m, 1e-9, 1e3, where, "defocus_m"));
+    PTIE_TRY(ptie_check_integer(p->boundary, PTIE_PERIODIC, PTIE_MIRROR, where, "boundary"));
+    PTIE_TRY(ptie_check_integer(p->propagation, PTIE_TIE_SPECTRAL, PTIE_ANGULAR_SPECTRUM, where,
+                                "propagation"));
+    PTIE_TRY(ptie_check_integer(p->flow.width_px, 16, 32768, where, "flow.width_px"));
+    PTIE_TRY(ptie_check_integer(p->flow.height_px, 16, 32768, where, "flow.height_px"));
+    PTIE_TRY(ptie_check_number(p->flow.pixel_m, 1e-9, 1, where, "flow.pixel_m"));
+    return ptie_check_number(p->flow.wavelength_m, 1e-12, 1e-2, where, "flow.wavelength_m");
+}
+
+ptie_status ptie_simulate(ptie_ctx *ctx, const ptie_simulate_params *params, ptie_progress progress) {
+    static const char where[] = "ptie_simulate";
+    ptie_simulate_params own;
+    ptie_simulate_params_init(&own);
+    PTIE_TRY(ptie_check_pointer(ctx, where, "ctx"));
+    PTIE_TRY(ptie_params_read(&own, sizeof own, params, where));
+    PTIE_TRY(check(&own, where));
+    return ptie_simulate_run(ctx->engine.pool, &own, progress);
+}
