@@ -19,7 +19,9 @@ void ptie_flow_params_init(ptie_flow_params *params) {
                                  .morphology = "mix"};
 }
 
-int32_t ptie_morphology_count(void) { return PTIE_MORPHOLOGIES; }
+int32_t ptie_morphology_count(void) {
+    return PTIE_MORPHOLOGIES;
+}
 
 const char *ptie_morphology_name(int32_t which) {
     const ptie_morphology *morphology = ptie_morphology_get(which);
@@ -39,7 +41,8 @@ static ptie_status find_morphology(int32_t *which, const char *name) {
     const char *nearest = ptie_nearest_word(name, words);
     for (*which = 0; words[*which] != nearest;) ++*which;
     if (strcmp(nearest, name) == 0) return PTIE_OK;
-    return PTIE_FAIL(PTIE_ENAME, WHERE ": unknown morphology '%s' (did you mean '%s'?)", name, nearest);
+    return PTIE_FAIL(PTIE_ENAME, WHERE ": unknown morphology '%s' (did you mean '%s'?)", name,
+                     nearest);
 }
 
 static ptie_status check(const ptie_flow_params *params) {
@@ -61,6 +64,7 @@ ptie_status ptie_flow_render(float *phase, const ptie_flow_params *params) {
     PTIE_TRY(check(&own));
     PTIE_TRY(find_morphology(&which, own.morphology));
     if (which < PTIE_MORPHOLOGIES) return ptie_flow_single(phase, which, &own);
-    ptie_flow_mix mix = own.family == PTIE_PHYSICAL ? ptie_flow_mix_realistic() : ptie_flow_mix_paper();
+    ptie_flow_mix mix =
+        own.family == PTIE_PHYSICAL ? ptie_flow_mix_realistic() : ptie_flow_mix_paper();
     return ptie_flow_compose(phase, &mix, &own, NULL);
 }

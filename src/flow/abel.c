@@ -6,7 +6,8 @@
 #define PANELS 8
 #define ORDER 16
 
-/* Positive nodes and weights of the 16-point Gauss-Legendre rule (Abramowitz & Stegun, table 25.4). */
+/* Positive nodes and weights of the 16-point Gauss-Legendre rule (Abramowitz & Stegun, table 25.4).
+ */
 static const double nodes[ORDER / 2][2] = {
     {0.0950125098376374402, 0.1894506104550684963}, {0.2816035507792589132, 0.1826034150449235889},
     {0.4580167776572273863, 0.1691565193950025382}, {0.6178762444026437484, 0.1495959888165767321},
@@ -32,7 +33,8 @@ void ptie_projection_fill(ptie_projection *projection, ptie_radial field, const 
                           double reach) {
     projection->reach = (float)reach;
     for (int i = 0; i < PTIE_PROJECTION_STEPS + 2; i++)
-        projection->value[i] = (float)ptie_abel(field, context, reach * i / PTIE_PROJECTION_STEPS, reach);
+        projection->value[i] =
+            (float)ptie_abel(field, context, reach * i / PTIE_PROJECTION_STEPS, reach);
 }
 
 float ptie_projection_at(const ptie_projection *projection, float y) {

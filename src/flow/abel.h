@@ -6,9 +6,9 @@
 /* f(r) of a radial field. */
 typedef double (*ptie_radial)(double radius, const void *context);
 
-/* 2 * integral of f(sqrt(y^2 + t^2)) over t from 0 to where the radius is `reach`, by Gauss-Legendre
-   quadrature of order 16 on eight panels: to 1e-9 of the peak for fields that vary over reach / 10 or
-   more. */
+/* 2 * integral of f(sqrt(y^2 + t^2)) over t from 0 to where the radius is `reach`, by
+   Gauss-Legendre quadrature of order 16 on eight panels: to 1e-9 of the peak for fields that vary
+   over reach / 10 or more. */
 double ptie_abel(ptie_radial field, const void *context, double y, double reach);
 
 /* The projection at 0 .. reach, tabulated; zero beyond. */

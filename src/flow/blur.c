@@ -22,8 +22,8 @@ static int32_t mirror(int32_t i, int32_t count) {
     return i < count ? i : period - 1 - i;
 }
 
-static void blur_rows(float *map, int32_t width, int32_t height, const float *weights, int32_t radius,
-                      float *line) {
+static void blur_rows(float *map, int32_t width, int32_t height, const float *weights,
+                      int32_t radius, float *line) {
     for (int32_t y = 0; y < height; y++) {
         float *row = map + (size_t)y * (size_t)width;
         for (int32_t i = 0; i < width + 2 * radius; i++) line[i] = row[mirror(i - radius, width)];
@@ -60,7 +60,8 @@ ptie_status ptie_blur(float *map, int32_t width, int32_t height, double sigma_px
         weights = ptie_slice(&slicer, (size_t)radius + 1, sizeof *weights);
         line = ptie_slice(&slicer, (size_t)width + 2 * (size_t)radius, sizeof *line);
         copy = ptie_slice(&slicer, pixels, sizeof *copy);
-        if (pass == 0) PTIE_TRY(ptie_alloc_status(&slicer.base, slicer.used, 1, "scratch of the blur"));
+        if (pass == 0)
+            PTIE_TRY(ptie_alloc_status(&slicer.base, slicer.used, 1, "scratch of the blur"));
     }
     fill_weights(weights, radius, sigma_px);
     blur_rows(map, width, height, weights, radius, line);

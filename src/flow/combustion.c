@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Flames and the hot plumes above them: tongues of burnt gas with thin fronts that bulge and roll as they
-   rise.  docs/math.md (F5), (F11). */
+/* Flames and the hot plumes above them: tongues of burnt gas with thin fronts that bulge and roll
+   as they rise.  docs/math.md (F5), (F11). */
 #include <math.h>
 
 #include "flow/abel.h"
@@ -20,13 +20,13 @@ typedef struct flame {
     ptie_stream stream;
     int count;
     tongue tongues[MOST_TONGUES];
-    float bulge;           /* amplitude of the bulges */
-    float foot;            /* height over which it sets in, units */
-    float tip;             /* height at which the flame closes, units; 0: an open plume */
-    float sheet, glow;     /* parametric: thickness of the front, brightness inside */
-    float cooling;         /* height over which the plume cools, units */
-    float rad;             /* physical: rad per unit of path of the hottest gas */
-    ptie_projection disc;  /* of radius 1 */
+    float bulge;          /* amplitude of the bulges */
+    float foot;           /* height over which it sets in, units */
+    float tip;            /* height at which the flame closes, units; 0: an open plume */
+    float sheet, glow;    /* parametric: thickness of the front, brightness inside */
+    float cooling;        /* height over which the plume cools, units */
+    float rad;            /* physical: rad per unit of path of the hottest gas */
+    ptie_projection disc; /* of radius 1 */
 } flame;
 
 /* Half-width of a tongue: bulges steepen upwards into mushrooms, a flame closes at its tip. */
@@ -55,12 +55,15 @@ static float bright_at(const void *flow, float x, float y) {
     if (fabsf(p.across) > 6) return 0;
     float value = 0, width;
     for (int i = 0; i < f->count; i++) {
-        float r = fabsf(across(f, &f->tongues[i], &p, &width)), thin = f->sheet / fmaxf(width, 0.2f * f->sheet);
+        float r = fabsf(across(f, &f->tongues[i], &p, &width)),
+              thin = f->sheet / fmaxf(width, 0.2f * f->sheet);
         if (r > 1 + 4 * thin || width < 0.1f * f->sheet) continue;
-        float inside = f->glow * ptie_rise((1 - r) / thin), front = (1 - f->glow) * ptie_bell((r - 1) / thin);
+        float inside = f->glow * ptie_rise((1 - r) / thin),
+              front = (1 - f->glow) * ptie_bell((r - 1) / thin);
         value = fmaxf(value, f->tongues[i].strength * (inside + front));
     }
-    return value * f->cooling / (f->cooling + x) * fmaxf(0, 1 + 0.3f * p.gust) * ptie_smoothstep(x / f->foot);
+    return value * f->cooling / (f->cooling + x) * fmaxf(0, 1 + 0.3f * p.gust) *
+           ptie_smoothstep(x / f->foot);
 }
 
 static float hot_at(const void *flow, float x, float y) {
@@ -93,7 +96,8 @@ static void draw_tongues(flame *f, const ptie_scene *scene, ptie_random *random)
     }
 }
 
-static ptie_status draw_flame(flame *f, const ptie_scene *scene, ptie_random *random, const ptie_axes *axes) {
+static ptie_status draw_flame(flame *f, const ptie_scene *scene, ptie_random *random,
+                              const ptie_axes *axes) {
     ptie_stream_ranges ranges = {0.04, 0.16, 0, 0.12, 0.03, 0.35};
     f->bulge = ptie_draw(random, 0.05, 0.5);
     f->foot = ptie_draw_log(random, 0.03, 0.3);
@@ -119,7 +123,8 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_UP, -0.15, 0.2, 0.35);
     flame f = {0};
-    double hotter = ptie_random_log_uniform(random, 1.3, 7), edge = ptie_random_log_uniform(random, 0.05, 0.35);
+    double hotter = ptie_random_log_uniform(random, 1.3, 7),
+           edge = ptie_random_log_uniform(random, 0.05, 0.35);
     double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene);
     f.rad = (float)(path * ptie_ambient_refractivity() * (1 / hotter - 1));
     ptie_projection_fill_disc(&f.disc, edge);

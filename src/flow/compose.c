@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* One morphology, and several of them combined with gradients and smoothing.  docs/math.md (F1)-(F3). */
+/* One morphology, and several of them combined with gradients and smoothing.  docs/math.md
+ * (F1)-(F3). */
 #include "flow/flow.h"
 
 #include <math.h>
@@ -110,18 +111,19 @@ static void add_ramp(float *map, const ptie_scene *scene, double share, double a
     float slope_x = (float)(slope * cos(angle)), slope_y = (float)(slope * sin(angle));
     for (int32_t y = 0; y < scene->height; y++) {
         float *row = map + (size_t)y * (size_t)scene->width;
-        for (int32_t x = 0; x < scene->width; x++) row[x] += slope_x * (float)x + slope_y * (float)y;
+        for (int32_t x = 0; x < scene->width; x++)
+            row[x] += slope_x * (float)x + slope_y * (float)y;
     }
 }
 
-ptie_status ptie_flow_compose(float *phase, const ptie_flow_mix *mix, const ptie_flow_params *params,
-                              uint32_t *morphologies) {
+ptie_status ptie_flow_compose(float *phase, const ptie_flow_mix *mix,
+                              const ptie_flow_params *params, uint32_t *morphologies) {
     ptie_scene scene = scene_of(params);
     size_t count = (size_t)scene.width * (size_t)scene.height;
     ptie_random random, own;
     ptie_random_init(&random, params->seed, PTIE_STREAM_FLOW, params->index);
-    int32_t members = ptie_random_integer(&random, (int32_t)mix->components.low,
-                                          (int32_t)mix->components.high);
+    int32_t members =
+        ptie_random_integer(&random, (int32_t)mix->components.low, (int32_t)mix->components.high);
     double smoothing = ptie_random_uniform(&random, mix->smoothing_px.low, mix->smoothing_px.high);
     double gradient = ptie_random_uniform(&random, mix->gradient.low, mix->gradient.high);
     double angle = ptie_random_uniform(&random, 0, 2 * acos(-1.0));

@@ -21,11 +21,13 @@ static float at(const void *flow, float x, float y) {
     ptie_parcel parcel = ptie_stream_at(&p->stream, x, y);
     float growth = sqrtf(1 + fmaxf(parcel.x, 0) / p->lag);
     float width = p->stream.radius * growth;
-    float value = ptie_bell(parcel.across * parcel.width / width) * ptie_smoothstep(behind / p->lag);
+    float value =
+        ptie_bell(parcel.across * parcel.width / width) * ptie_smoothstep(behind / p->lag);
     return p->height * value / (p->fade > 1 ? growth * growth : growth);
 }
 
-static ptie_status draw_plume(float *map, const ptie_scene *scene, ptie_random *random, float height) {
+static ptie_status draw_plume(float *map, const ptie_scene *scene, ptie_random *random,
+                              float height) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, -0.1, 0.35, 0.4);
     ptie_stream_ranges ranges = {0.015, 0.08, 0, 0, 0, 0.25};
     plume p = {.height = height, .fade = (float)ptie_random_integer(random, 1, 2)};
@@ -38,22 +40,28 @@ static ptie_status draw_plume(float *map, const ptie_scene *scene, ptie_random *
 }
 
 /* Puffs released one after the other: sigma^2 = sigma0^2 + 2 D t, height by what the puff holds. */
-static ptie_status draw_puffs(float *map, const ptie_scene *scene, ptie_random *random, float height) {
+static ptie_status draw_puffs(float *map, const ptie_scene *scene, ptie_random *random,
+                              float height) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ANY, 0.0, 0.2, 0.3);
-    double start = ptie_random_uniform(random, 0.02, 0.06), widening = ptie_random_uniform(random, 0.05, 0.2);
-    double aside = ptie_random_uniform(random, 0, 0.25), speed = 0.4 * ptie_speed_draw(scene, random);
-    double spacing = ptie_random_uniform(random, 0.25, 0.7), roundness = ptie_random_uniform(random, 0.5, 1);
+    double start = ptie_random_uniform(random, 0.02, 0.06),
+           widening = ptie_random_uniform(random, 0.05, 0.2);
+    double aside = ptie_random_uniform(random, 0, 0.25),
+           speed = 0.4 * ptie_speed_draw(scene, random);
+    double spacing = ptie_random_uniform(random, 0.25, 0.7),
+           roundness = ptie_random_uniform(random, 0.5, 1);
     uint64_t key = ptie_key_draw(random);
     ptie_train train = ptie_train_make(spacing, speed * scene->time_s, (double)axes.start - 1,
                                        (double)axes.end + 0.5);
     for (int64_t n = train.first; n <= train.last; n++) {
         ptie_random own;
         double x = ptie_train_car(&train, n, key, &own);
-        double age = x - (double)axes.start + 1, sigma = sqrt(start * start + widening * widening * age * age / 4);
+        double age = x - (double)axes.start + 1,
+               sigma = sqrt(start * start + widening * widening * age * age / 4);
         float tall = ptie_draw(&own, 0.4, 1), y = (float)(aside * ptie_random_normal(&own));
         float angle = ptie_draw(&own, 0, 3.1416);
-        ptie_spot spot = {(float)x, y, (float)sigma, (float)(sigma * roundness), angle,
-                          height * tall * (float)(start * start / sigma)};
+        ptie_spot spot = {(float)x,     y,
+                          (float)sigma, (float)(sigma * roundness),
+                          angle,        height * tall * (float)(start * start / sigma)};
         ptie_splat(map, scene, &axes, &spot);
     }
     return PTIE_OK;
@@ -71,12 +79,14 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
 
 /* Another gas at the pressure and temperature of the air. */
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
-    static const ptie_gas_kind kinds[] = {PTIE_HELIUM, PTIE_CARBON_DIOXIDE, PTIE_METHANE, PTIE_HYDROGEN,
-                                          PTIE_ARGON};
+    static const ptie_gas_kind kinds[] = {PTIE_HELIUM, PTIE_CARBON_DIOXIDE, PTIE_METHANE,
+                                          PTIE_HYDROGEN, PTIE_ARGON};
     const ptie_gas *gas = ptie_gas_get(kinds[ptie_random_integer(random, 0, 4)]);
-    double step = ptie_gas_refractivity(gas, PTIE_AMBIENT_PA, PTIE_AMBIENT_K) - ptie_ambient_refractivity();
+    double step =
+        ptie_gas_refractivity(gas, PTIE_AMBIENT_PA, PTIE_AMBIENT_K) - ptie_ambient_refractivity();
     double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene);
-    return draw(map, scene, random, (float)(2.5066 * path * step)); /* sqrt(2 pi): depth of a Gaussian */
+    return draw(map, scene, random,
+                (float)(2.5066 * path * step)); /* sqrt(2 pi): depth of a Gaussian */
 }
 
 const ptie_morphology ptie_flow_diffusion = {"diffusion", "Gas diffusion", parametric, physical};

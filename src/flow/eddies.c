@@ -15,7 +15,8 @@ static float envelope_at(const void *flow, float x, float y) {
     const envelope *e = flow;
     float width = e->radius + e->spread * fmaxf(x, 0);
     if (fabsf(y) > 4 * width) return 0;
-    return e->base * ptie_bell(y / width) * expf(-fmaxf(x, 0) / e->decay) * ptie_smoothstep(x / e->radius + 1);
+    return e->base * ptie_bell(y / width) * expf(-fmaxf(x, 0) / e->decay) *
+           ptie_smoothstep(x / e->radius + 1);
 }
 
 static envelope envelope_draw(ptie_random *random, const ptie_axes *axes) {
@@ -30,7 +31,8 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, -0.25, 0.2, 0.4);
     envelope e = envelope_draw(random, &axes);
     float size = ptie_draw_log(random, 0.15, 0.5), growth = ptie_draw(random, 0.2, 1);
-    double holes = ptie_random_uniform(random, 0, 0.35), density = ptie_random_log_uniform(random, 1.2, 5);
+    double holes = ptie_random_uniform(random, 0, 0.35),
+           density = ptie_random_log_uniform(random, 1.2, 5);
     float base = ptie_draw(random, 0.05, 0.5), stretch = ptie_draw(random, 1, 2.5);
     double speed = ptie_speed_draw(scene, random);
     uint64_t key = ptie_key_draw(random);
@@ -39,7 +41,8 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     e.base = 1;
     /* `density` eddies side by side in each stretch of their own size. */
     double spacing = (double)(size * e.radius) / density;
-    ptie_train train = ptie_train_make(spacing, speed * scene->time_s, (double)-e.radius, (double)axes.end + 0.1);
+    ptie_train train =
+        ptie_train_make(spacing, speed * scene->time_s, (double)-e.radius, (double)axes.end + 0.1);
     for (int64_t n = train.first; n <= train.last; n++) {
         ptie_random own;
         double x = ptie_train_car(&train, n, key, &own);
@@ -56,6 +59,8 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
         ptie_spot spot = {(float)x, y, sigma * slim, sigma, angle, height};
         ptie_splat(map, scene, &axes, &spot);
     }
+    for (size_t i = 0; i < (size_t)scene->width * (size_t)scene->height; i++)
+        map[i] = fmaxf(map[i], 0);
     return PTIE_OK;
 }
 
@@ -82,12 +87,15 @@ static float mixing_at(const void *flow, float x, float y) {
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, -0.25, 0.15, 0.4);
     ptie_stream_ranges ranges = {0.04, 0.12, 0.05, 0.2, 0.2, 0.5};
-    mixing m = {.decay = ptie_draw(random, 0.2, 1.5) * axes.end, .stirring = ptie_draw(random, 0.2, 0.7)};
-    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene), air = ptie_ambient_refractivity();
+    mixing m = {.decay = ptie_draw(random, 0.2, 1.5) * axes.end,
+                .stirring = ptie_draw(random, 0.2, 0.7)};
+    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene),
+           air = ptie_ambient_refractivity();
     bool warm = ptie_chance(random, 0.6);
     double heated = PTIE_AMBIENT_K / ptie_random_uniform(random, 330, 900);
     double share = ptie_random_uniform(random, 0.15, 1); /* of another gas */
-    const ptie_gas *gas = ptie_gas_get(ptie_chance(random, 0.5) ? PTIE_HELIUM : PTIE_CARBON_DIOXIDE);
+    const ptie_gas *gas =
+        ptie_gas_get(ptie_chance(random, 0.5) ? PTIE_HELIUM : PTIE_CARBON_DIOXIDE);
     double other = ptie_gas_refractivity(gas, PTIE_AMBIENT_PA, PTIE_AMBIENT_K) - air;
     m.height = (float)(2.5066 * path * (warm ? air * (heated - 1) : other * share));
     PTIE_TRY(ptie_stream_draw(&m.stream, scene, random, &ranges, (double)axes.end));

@@ -29,23 +29,29 @@ static void set_cells(ptie_exhaust *e, const ptie_gas *gas, const ptie_underexpa
     }
 }
 
-/* Isentropic expansion up to the disk, a normal shock there. */
+/* Behind the disk the gas is slow again, at about its total temperature and the pressure of the
+ * air. */
 static void set_disk(ptie_exhaust *e, const ptie_gas *gas, const ptie_underexpanded *jet,
-                     double rad_per_density, double air_rad) {
-    double diameter = 2 * (double)e->nozzle;
+                     double path, double total_k) {
+    double diameter = 2 * (double)e->nozzle, air = path * ptie_ambient_refractivity();
     e->disk = (float)(jet->disk * diameter);
     e->disk_radius = (float)(jet->disk_diameter * diameter / 2);
-    e->exit = (float)(rad_per_density * jet->exit_density - air_rad);
-    e->air = (float)air_rad;
-    double before = jet->exit_density / (1 + 4 * jet->disk * jet->disk);
-    double behind = before * ptie_shock_density(gas->gamma, 1.6 * jet->mach);
-    e->behind = (float)(rad_per_density * behind - air_rad);
+    e->air = (float)air;
+    e->exit = (float)(path * gas->gladstone * jet->exit_density - air);
+    e->behind = (float)(path * ptie_gas_refractivity(gas, PTIE_AMBIENT_PA, total_k) - air);
 }
 
 static const ptie_gas *gas_draw(ptie_random *random) {
-    static const ptie_gas_kind kinds[] = {PTIE_AIR,    PTIE_AIR,    PTIE_AIR,   PTIE_NITROGEN,
-                                          PTIE_HELIUM, PTIE_HELIUM, PTIE_ARGON, PTIE_CARBON_DIOXIDE,
-                                          PTIE_CARBON_DIOXIDE, PTIE_HYDROGEN};
+    static const ptie_gas_kind kinds[] = {PTIE_AIR,
+                                          PTIE_AIR,
+                                          PTIE_AIR,
+                                          PTIE_NITROGEN,
+                                          PTIE_HELIUM,
+                                          PTIE_HELIUM,
+                                          PTIE_ARGON,
+                                          PTIE_CARBON_DIOXIDE,
+                                          PTIE_CARBON_DIOXIDE,
+                                          PTIE_HYDROGEN};
     return ptie_gas_get(kinds[ptie_random_integer(random, 0, sizeof kinds / sizeof *kinds - 1)]);
 }
 
@@ -55,8 +61,10 @@ void ptie_exhaust_draw(ptie_exhaust *exhaust, const ptie_scene *scene, ptie_rand
     bool choked = ptie_chance(random, 0.6);
     double ratio = ptie_random_log_uniform(random, 2.2, 14);
     double warm_k = ptie_random_uniform(random, 320, 700);
-    double fade_cells = ptie_random_uniform(random, 2, 8), edge = ptie_random_uniform(random, 0.05, 0.3);
-    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene); /* rad per unit and n - 1 */
+    double fade_cells = ptie_random_uniform(random, 2, 8),
+           edge = ptie_random_uniform(random, 0.05, 0.3);
+    double path =
+        ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene); /* rad per unit and n - 1 */
     double air_rad = path * ptie_ambient_refractivity(), density;
     const bool is_air = gas == ptie_gas_get(PTIE_AIR) || gas == ptie_gas_get(PTIE_NITROGEN);
     *exhaust = (ptie_exhaust){.nozzle = nozzle, .radius = nozzle};
@@ -65,14 +73,15 @@ void ptie_exhaust_draw(ptie_exhaust *exhaust, const ptie_scene *scene, ptie_rand
         ptie_underexpanded jet = ptie_underexpand(gas, ratio, PTIE_AMBIENT_K);
         density = jet.density;
         exhaust->radius = nozzle * (float)jet.diameter;
-        if (jet.disk > 0) set_disk(exhaust, gas, &jet, path * gas->gladstone, air_rad);
+        if (jet.disk > 0) set_disk(exhaust, gas, &jet, path, PTIE_AMBIENT_K);
         set_cells(exhaust, gas, &jet, path * gas->gladstone,
                   fade_cells * jet.cell * 2 * (double)nozzle);
     } else { /* at ambient pressure; air would not show unless it is warm */
         density = ptie_gas_density(gas, PTIE_AMBIENT_PA, is_air ? warm_k : PTIE_AMBIENT_K);
     }
     double air = ptie_gas_density(ptie_gas_get(PTIE_AIR), PTIE_AMBIENT_PA, PTIE_AMBIENT_K);
-    double core = 5.4 * sqrt(density / air); /* diameters until the concentration on the axis falls */
+    double core =
+        5.4 * sqrt(density / air); /* diameters until the concentration on the axis falls */
     exhaust->core = 2 * exhaust->radius * (float)fmin(fmax(core, 3), 12);
     exhaust->gas = (float)(path * gas->gladstone * density - air_rad);
 }
@@ -81,8 +90,8 @@ static float disc(const ptie_exhaust *e, float radius, float y) {
     return radius * ptie_projection_at(&e->disc, y / radius);
 }
 
-/* The first cell with a Mach disk: a barrel, ever thinner inside, in a shell of gas that its shock has
-   compressed. */
+/* The first cell with a Mach disk: a barrel, ever thinner inside, in a shell of gas that its shock
+   has compressed. */
 static float barrel(const ptie_exhaust *e, float width, float x, float y) {
     float t = x / e->disk, s = 1 - t, way = x / e->nozzle;
     float outer = e->nozzle + (width - e->nozzle) * t * (2 - t);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Expansion fans: a cone that widens from a point; Prandtl-Meyer flow around a corner.  docs/math.md (F8). */
+/* Expansion fans: a cone that widens from a point; Prandtl-Meyer flow around a corner. docs/math.md
+ * (F8). */
 #include <math.h>
 
 #include "flow/gas.h"
@@ -8,10 +9,11 @@
 
 typedef struct cone {
     ptie_turbulence turbulence;
-    float opening, centre;  /* half-angle and axis, rad */
-    float flatness;         /* 0: Gaussian across, 1: flat with steep flanks */
-    float source, reach;    /* radius of the source, length over which it fades, units */
-    float rays, ray_count, twin; /* contrast of rays; their number per rad; strength of a second cone */
+    float opening, centre; /* half-angle and axis, rad */
+    float flatness;        /* 0: Gaussian across, 1: flat with steep flanks */
+    float source, reach;   /* radius of the source, length over which it fades, units */
+    float rays, ray_count,
+        twin; /* contrast of rays; their number per rad; strength of a second cone */
     float streaks;
 } cone;
 
@@ -29,12 +31,16 @@ static float cone_at(const void *flow, float x, float y) {
     if (value <= 0) return 0;
     float field[PTIE_TURBULENCE_FIELDS];
     ptie_turbulence_at(&c->turbulence, r, angle * 0.5f, field);
-    value *= fmaxf(0, 1 + c->rays * cosf(c->ray_count * angle + 0.6f * field[1]) + c->streaks * field[0]);
-    return value * expf(-r / c->reach) * c->source / (c->source + r) * ptie_smoothstep(r / (0.12f * c->source));
+    value *= fmaxf(0, 1 + c->rays * cosf(c->ray_count * angle + 0.6f * field[1]) +
+                          c->streaks * field[0]);
+    return value * expf(-r / c->reach) * c->source / (c->source + r) *
+           ptie_smoothstep(r / (0.12f * c->source));
 }
 
-static ptie_turbulence_params streaks_draw(const ptie_scene *scene, ptie_random *random, double period) {
-    double speed = ptie_speed_draw(scene, random), size = ptie_random_log_uniform(random, 0.15, 0.6);
+static ptie_turbulence_params streaks_draw(const ptie_scene *scene, ptie_random *random,
+                                           double period) {
+    double speed = ptie_speed_draw(scene, random),
+           size = ptie_random_log_uniform(random, 0.15, 0.6);
     return (ptie_turbulence_params){.key = ptie_key_draw(random),
                                     .period = period,
                                     .outer = size,
@@ -62,7 +68,8 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     return PTIE_OK;
 }
 
-/* Supersonic flow along a wall that turns away at the origin; the gas is at y > 0 and behind the corner. */
+/* Supersonic flow along a wall that turns away at the origin; the gas is at y > 0 and behind the
+ * corner. */
 #define RAYS 256
 typedef struct corner {
     ptie_turbulence turbulence;
@@ -83,9 +90,11 @@ static void fill_rays(corner *c, double gamma, double mach, double turn, double 
         double local = mach + (end - mach) * step / STEPS;
         ray = asin(1 / local) - (ptie_prandtl_meyer(gamma, local) - start);
         float phase = (float)(rad * (ptie_isentropic_density(gamma, local) / before - 1));
-        while (filled <= RAYS && first + (last - first) * filled / RAYS >= ray) c->phase[filled++] = phase;
+        while (filled <= RAYS && first + (last - first) * filled / RAYS >= ray)
+            c->phase[filled++] = phase;
     }
-    while (filled <= RAYS) c->phase[filled++] = (float)(rad * (ptie_isentropic_density(gamma, end) / before - 1));
+    while (filled <= RAYS)
+        c->phase[filled++] = (float)(rad * (ptie_isentropic_density(gamma, end) / before - 1));
     c->first = (float)first;
     c->last = (float)last;
     c->turn = (float)turn;
@@ -109,7 +118,8 @@ static float corner_at(const void *flow, float x, float y) {
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, 0.05, 0.4, 0.5);
     double mach = ptie_random_uniform(random, 1.2, 3), turn = ptie_random_uniform(random, 0.1, 0.5);
-    double pressure = ptie_random_uniform(random, 0.2, 1), depth = ptie_random_uniform(random, 0.2, 0.8);
+    double pressure = ptie_random_uniform(random, 0.2, 1),
+           depth = ptie_random_uniform(random, 0.2, 0.8);
     corner c = {.edge = 1.5f * axes.pixel, .streaks = ptie_draw(random, 0.03, 0.12)};
     c.reach = ptie_draw(random, 0.5, 1.2) * axes.end;
     double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene) * depth;

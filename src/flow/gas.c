@@ -16,7 +16,9 @@ static const ptie_gas gases[PTIE_GASES] = {
     [PTIE_METHANE] = {6.204e-4, 1.304, 518.28},
 };
 
-const ptie_gas *ptie_gas_get(ptie_gas_kind kind) { return &gases[kind]; }
+const ptie_gas *ptie_gas_get(ptie_gas_kind kind) {
+    return &gases[kind];
+}
 
 double ptie_gas_density(const ptie_gas *gas, double pressure_pa, double temperature_k) {
     return pressure_pa / (gas->constant * temperature_k);
@@ -30,6 +32,11 @@ double ptie_ambient_refractivity(void) {
     return ptie_gas_refractivity(&gases[PTIE_AIR], PTIE_AMBIENT_PA, PTIE_AMBIENT_K);
 }
 
+double ptie_electron_phase(double wavelength_m, double column) {
+    const double electron_radius_m = 2.8179403262e-15; /* classical */
+    return -electron_radius_m * wavelength_m * column;
+}
+
 double ptie_isentropic_density(double gamma, double mach) {
     return pow(1 + (gamma - 1) / 2 * mach * mach, -1 / (gamma - 1));
 }
@@ -37,15 +44,6 @@ double ptie_isentropic_density(double gamma, double mach) {
 double ptie_shock_density(double gamma, double mach) {
     double m2 = mach * mach;
     return (gamma + 1) * m2 / ((gamma - 1) * m2 + 2);
-}
-
-double ptie_shock_pressure(double gamma, double mach) {
-    return 1 + 2 * gamma / (gamma + 1) * (mach * mach - 1);
-}
-
-double ptie_shock_mach(double gamma, double mach) {
-    double m2 = mach * mach;
-    return sqrt((1 + (gamma - 1) / 2 * m2) / (gamma * m2 - (gamma - 1) / 2));
 }
 
 double ptie_oblique_deflection(double gamma, double mach, double beta) {

@@ -7,12 +7,13 @@
 
 typedef struct jet {
     ptie_stream stream;
-    float decay;              /* length over which it fades, units */
-    float gusts;              /* fluctuation of its strength */
-    float sharpness;          /* 0: Gaussian profile; towards 1: flat with steep flanks near the source */
-    float core;               /* length of the potential core, units */
-    float cell, cells, cell_decay; /* shock cells: length, strength, distance over which they fade */
-    float head, head_steepness;    /* how far a starting jet has come */
+    float decay;     /* length over which it fades, units */
+    float gusts;     /* fluctuation of its strength */
+    float sharpness; /* 0: Gaussian profile; towards 1: flat with steep flanks near the source */
+    float core;      /* length of the potential core, units */
+    float cell, cells,
+        cell_decay;             /* shock cells: length, strength, distance over which they fade */
+    float head, head_steepness; /* how far a starting jet has come */
 } jet;
 
 static float profile(const jet *j, const ptie_parcel *p) {
@@ -27,9 +28,10 @@ static float at(const void *flow, float x, float y) {
     if (x < -0.02f) return 0;
     ptie_parcel p = ptie_stream_at(&j->stream, x, y);
     float value = profile(j, &p) * expf(-p.x / j->decay) * ptie_smoothstep(x / 0.01f);
-    value *= 1 + j->gusts * p.gust;
+    value *= fmaxf(0, 1 + j->gusts * p.gust);
     if (j->cells > 0)
-        value *= 1 + j->cells * expf(-x / j->cell_decay) * cosf(x / j->cell) * ptie_bell(1.3f * p.across);
+        value *= 1 + j->cells * expf(-x / j->cell_decay) * cosf(x / j->cell) *
+                         ptie_bell(1.3f * p.across);
     return value * ptie_rise((j->head - p.x) * j->head_steepness);
 }
 

@@ -5,9 +5,10 @@
 
 #include "flow/scene.h"
 
-/* Draws a flow's parameters from `random`, in an order that does not depend on the time, then its phase
-   at the scene's time.  map (out): height x width. */
-typedef ptie_status (*ptie_morphology_draw)(float *map, const ptie_scene *scene, ptie_random *random);
+/* Draws a flow's parameters from `random`, in an order that does not depend on the time, then its
+   phase at the scene's time.  map (out): height x width. */
+typedef ptie_status (*ptie_morphology_draw)(float *map, const ptie_scene *scene,
+                                            ptie_random *random);
 
 typedef struct ptie_morphology {
     const char *name, *title;

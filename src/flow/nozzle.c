@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A nozzle with parallel flow channels.  The parametric family shows the nozzle's outline; in the physical
-   one it is opaque, which is no phase.  docs/math.md (F7). */
+/* A nozzle with parallel flow channels.  The parametric family shows the nozzle's outline; in the
+   physical one it is opaque, which is no phase.  docs/math.md (F7). */
 #include <math.h>
 
 #include "flow/exhaust.h"
@@ -32,13 +32,14 @@ static float body_at(const body *b, float x, float y) {
     if (b->height <= 0 || t < -4 * b->edge || t > b->length + 4 * b->edge) return 0;
     float half = half_height(b, fmaxf(t, 0)), aside = fabsf(y);
     float ends = ptie_rise(t / b->edge) * ptie_rise((b->length - t) / b->edge);
-    float wall = ptie_rise((half - aside) / b->edge), bore = ptie_rise((0.6f * b->lip - aside) / b->edge);
+    float wall = ptie_rise((half - aside) / b->edge),
+          bore = ptie_rise((0.6f * b->lip - aside) / b->edge);
     return b->height * ends * wall * (1 - b->hollow * bore);
 }
 
 typedef struct channel {
     float place, width, spread, strength, decay; /* all in units but strength */
-    float cell, beads; /* rad per unit and contrast of the shock cells */
+    float cell, beads;                           /* rad per unit and contrast of the shock cells */
 } channel;
 
 typedef struct nozzle {
@@ -49,21 +50,26 @@ typedef struct nozzle {
     channel channels[MOST_CHANNELS];
 } nozzle;
 
-static float at(const void *flow, float x, float y) {
-    const nozzle *n = flow;
-    float value = body_at(&n->body, x, y);
-    if (x < 0) return value;
+static float channels_at(const nozzle *n, float x, float y) {
     ptie_parcel p = ptie_stream_at(&n->stream, x, y);
-    float aside = p.across * p.width, along = fmaxf(p.x, 0);
-    if (fabsf(p.across) > 6) return value;
+    float aside = p.across * p.width, along = fmaxf(p.x, 0), value = 0;
+    if (fabsf(p.across) > 6) return 0;
     for (int i = 0; i < n->count; i++) {
         const channel *c = &n->channels[i];
-        float width = c->width + c->spread * along, d = (aside - c->place * (1 + n->divergence * along)) / width;
+        float width = c->width + c->spread * along;
+        float d = (aside - c->place * (1 + n->divergence * along)) / width;
         if (fabsf(d) > 4) continue;
         float bead = c->beads > 0 ? 1 + c->beads * cosf(c->cell * x) * expf(-4 * x) : 1;
         value += c->strength * bead * ptie_bell(d) * expf(-along / c->decay) * c->width / width;
     }
-    return value * ptie_rise(x / n->body.edge) + (1 - ptie_rise(x / n->body.edge)) * body_at(&n->body, x, y);
+    return value;
+}
+
+static float at(const void *flow, float x, float y) {
+    const nozzle *n = flow;
+    float value = body_at(&n->body, x, y);
+    if (x > 0) value += channels_at(n, x, y) * ptie_smoothstep(x / (2 * n->body.edge));
+    return value;
 }
 
 static void draw_body(body *b, ptie_random *random, float lip, float pixel) {
@@ -80,8 +86,10 @@ static void draw_channels(nozzle *n, ptie_random *random, const ptie_axes *axes,
     n->count = ptie_random_integer(random, 2, MOST_CHANNELS);
     n->divergence = ptie_draw(random, 0, 0.6);
     float pitch = 2 * lip / (float)n->count, fill = ptie_draw(random, 0.12, 0.4);
-    float spread = ptie_draw(random, 0, 0.35) * pitch, decay = ptie_draw_log(random, 0.5, 5) * axes->end;
-    float uneven = ptie_draw(random, 0, 0.6), beads = ptie_chance(random, 0.3) ? ptie_draw(random, 0.2, 0.6) : 0;
+    float spread = ptie_draw(random, 0, 0.35) * pitch,
+          decay = ptie_draw_log(random, 0.5, 5) * axes->end;
+    float uneven = ptie_draw(random, 0, 0.6),
+          beads = ptie_chance(random, 0.3) ? ptie_draw(random, 0.2, 0.6) : 0;
     float cell = ptie_draw(random, 1.5, 4) / pitch;
     for (int i = 0; i < MOST_CHANNELS; i++) {
         channel *c = &n->channels[i];

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Plasma: a kinked discharge channel with branches, or a laser spark, in a glow.  docs/math.md (F11). */
+/* Plasma: a kinked discharge channel with branches, or a laser spark, in a glow.  docs/math.md
+ * (F11). */
 #include <math.h>
 
+#include "flow/gas.h"
 #include "flow/morphology.h"
 #include "flow/turbulence.h"
 
@@ -10,7 +12,7 @@
 
 /* A channel that runs along x: its distance from the axis at equal steps. */
 typedef struct channel {
-    float start, end, radius, strength; /* units */
+    float start, end, radius, strength;                       /* units */
     float path[CHANNEL_STEPS + 2], middle[CHANNEL_STEPS + 2]; /* the channel; its smoothed course */
 } channel;
 
@@ -19,8 +21,8 @@ typedef struct discharge {
     int count;
     channel channels[MOST_CHANNELS];
     float halo, halo_strength; /* radius in channel radii */
-    float height;              /* 1, or rad of a channel of radius 1 unit: grows with the path through it */
-    float depth;               /* 1: height is per unit of path; 0: the same for every channel */
+    float height; /* 1, or rad of a channel of radius 1 unit: grows with the path through it */
+    float depth;  /* 1: height is per unit of path; 0: the same for every channel */
     float flicker;
 } discharge;
 
@@ -33,8 +35,11 @@ static float channel_at(const discharge *d, const channel *c, float x, float y) 
     float rise = c->path[whole + 1] - c->path[whole], run = (c->end - c->start) / CHANNEL_STEPS;
     float across = y - c->path[whole] - part * rise;
     float r = fabsf(across) * run / sqrtf(run * run + rise * rise) / c->radius;
-    float ends = ptie_smoothstep((x - c->start) / (3 * c->radius)) * ptie_smoothstep((c->end - x) / (3 * c->radius));
-    float glow = d->halo_strength > 0 ? d->halo_strength * ptie_bell(from_middle / (d->halo * c->radius)) : 0;
+    float ends = ptie_smoothstep((x - c->start) / (3 * c->radius)) *
+                 ptie_smoothstep((c->end - x) / (3 * c->radius));
+    float glow = d->halo_strength > 0
+                     ? d->halo_strength * ptie_bell(from_middle / (d->halo * c->radius))
+                     : 0;
     return ends * c->strength * (ptie_bell(r) + glow) * (d->depth > 0 ? c->radius : 1);
 }
 
@@ -60,18 +65,21 @@ static void smooth_course(channel *c) {
     }
 }
 
-/* Kinks from the turbulence, pinned at both ends; branches start on the main channel and run away from it. */
-static void bend_channel(channel *c, const discharge *d, const channel *main, float kinks, float away,
-                         float lane) {
+/* Kinks from the turbulence, pinned at both ends; branches start on the main channel and run away
+ * from it. */
+static void bend_channel(channel *c, const discharge *d, const channel *main, float kinks,
+                         float away, float lane) {
     float base = 0;
     if (main) {
         float step = (c->start - main->start) / (main->end - main->start) * CHANNEL_STEPS;
         base = main->path[(int)step];
     }
     for (int i = 0; i < CHANNEL_STEPS + 2; i++) {
-        float t = (float)i / CHANNEL_STEPS, x = c->start + t * (c->end - c->start), field[PTIE_TURBULENCE_FIELDS];
+        float t = (float)i / CHANNEL_STEPS, x = c->start + t * (c->end - c->start),
+              field[PTIE_TURBULENCE_FIELDS];
         ptie_turbulence_at(&d->turbulence, x, lane, field);
-        float pinned = main ? ptie_smoothstep(4 * t) : ptie_smoothstep(5 * t) * ptie_smoothstep(5 * (1 - t));
+        float pinned =
+            main ? ptie_smoothstep(4 * t) : ptie_smoothstep(5 * t) * ptie_smoothstep(5 * (1 - t));
         c->path[i] = base + kinks * pinned * field[0] + away * (x - c->start);
     }
     smooth_course(c);
@@ -118,11 +126,13 @@ static ptie_status draw_discharge(float *map, const ptie_scene *scene, ptie_rand
 }
 
 /* A spark's kernel: a hot spot that swells, drawn out along the beam, and a lobe thrown back. */
-static void draw_spark(float *map, const ptie_scene *scene, ptie_random *random, const ptie_axes *axes,
-                       float height) {
-    double speed = 0.3 * ptie_speed_draw(scene, random), start = ptie_random_uniform(random, 0.03, 0.12);
+static void draw_spark(float *map, const ptie_scene *scene, ptie_random *random,
+                       const ptie_axes *axes, float height) {
+    double speed = 0.3 * ptie_speed_draw(scene, random),
+           start = ptie_random_uniform(random, 0.03, 0.12);
     double grown = start * pow(1 + 2.5 * fmod(speed * scene->time_s, 0.3) / start, 0.4);
-    float round = ptie_draw(random, 0.4, 1), lobe = ptie_draw(random, 0.5, 1.2), tilt = ptie_draw(random, -0.3, 0.3);
+    float round = ptie_draw(random, 0.4, 1), lobe = ptie_draw(random, 0.5, 1.2),
+          tilt = ptie_draw(random, -0.3, 0.3);
     float r = (float)grown, dim = height * (float)(start / grown);
     ptie_spot spots[3] = {{0, 0, r, r * round, tilt, dim},
                           {-r * lobe * 1.6f, tilt * r, 0.6f * r, 0.6f * r, 0, 0.6f * dim},
@@ -141,10 +151,11 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
 
 /* Free electrons: phi = -r_e lambda * integral of n_e, through a Gaussian channel. */
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
-    const double electron_radius_m = 2.8179403e-15, sqrt_two_pi = 2.50662827;
+    const double sqrt_two_pi = 2.50662827;
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ANY, 0.35, 0.65, 0.3);
     double electrons = ptie_random_log_uniform(random, 3e22, 3e24); /* per m^3 */
-    double rad = -electron_radius_m * scene->wavelength_m * electrons * ptie_scene_unit_m(scene) * sqrt_two_pi;
+    double column = electrons * ptie_scene_unit_m(scene) * sqrt_two_pi;
+    double rad = ptie_electron_phase(scene->wavelength_m, column);
     discharge d = {.height = (float)rad, .depth = 1, .halo_strength = ptie_draw(random, 0, 0.3)};
     if (ptie_chance(random, 0.75)) return draw_discharge(map, scene, random, &axes, &d);
     ptie_clear(map, scene);

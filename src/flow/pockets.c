@@ -15,7 +15,8 @@ static float carrier_at(const void *flow, float x, float y) {
     const carrier *c = flow;
     float width = c->radius + c->spread * fmaxf(x, 0);
     if (fabsf(y) > 4 * width) return 0;
-    return c->height * ptie_bell(y / width) * expf(-fmaxf(x, 0) / c->decay) * ptie_smoothstep(x / 0.05f + 1);
+    return c->height * ptie_bell(y / width) * expf(-fmaxf(x, 0) / c->decay) *
+           ptie_smoothstep(x / 0.05f + 1);
 }
 
 /* How the pockets of a row look. */
@@ -33,7 +34,8 @@ static row row_draw(const ptie_scene *scene, ptie_random *random, const ptie_axe
     r.decay = ptie_draw_log(random, 0.5, 4) * axes->end;
     r.hollow = ptie_chance(random, 0.4) ? ptie_draw(random, 0.3, 0.8) : 0;
     r.spacing = (double)r.size * ptie_random_uniform(random, 3, 7);
-    r.growth = ptie_draw(random, 0, 1) * ((float)r.spacing / 2.8f - r.size) / axes->end; /* stay apart */
+    r.growth =
+        ptie_draw(random, 0, 1) * ((float)r.spacing / 2.8f - r.size) / axes->end; /* stay apart */
     r.jitter = ptie_random_uniform(random, 0, 0.12) * r.spacing;
     r.speed = ptie_speed_draw(scene, random);
     r.key = ptie_key_draw(random);
@@ -63,7 +65,8 @@ static ptie_train train_of(const row *r, const ptie_scene *scene) {
 static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, -0.15, 0.3, 0.5);
     row r = row_draw(scene, random, &axes);
-    carrier c = {.radius = r.size * ptie_draw(random, 0.6, 1.5), .spread = r.growth, .decay = r.decay};
+    carrier c = {
+        .radius = r.size * ptie_draw(random, 0.6, 1.5), .spread = r.growth, .decay = r.decay};
     c.height = ptie_draw(random, 0.05, 0.4);
     ptie_paint(map, scene, &axes, carrier_at, &c);
     ptie_train train = train_of(&r, scene);
@@ -96,7 +99,8 @@ static void fill_vortex(vortex *v, double deficit) {
         suction[i] = suction[i + 1] + speed * speed / r * step;
     }
     for (int i = 0; i < VORTEX_STEPS + 2; i++) {
-        double share = (suction[i] - suction[VORTEX_STEPS + 1]) / (suction[0] - suction[VORTEX_STEPS + 1]);
+        double share =
+            (suction[i] - suction[VORTEX_STEPS + 1]) / (suction[0] - suction[VORTEX_STEPS + 1]);
         v->density[i] = (float)(pow(1 - deficit * share, 1 / 1.4) - 1);
     }
 }
@@ -106,7 +110,8 @@ static float vortex_at(const void *context, float r) {
     float step = r / v->core * (float)(VORTEX_STEPS / VORTEX_REACH);
     int whole = (int)step;
     if (whole >= VORTEX_STEPS) return 0;
-    return v->height * (v->density[whole] + (step - (float)whole) * (v->density[whole + 1] - v->density[whole]));
+    return v->height * (v->density[whole] +
+                        (step - (float)whole) * (v->density[whole + 1] - v->density[whole]));
 }
 
 /* A bubble of other or warm gas, round in depth too. */
@@ -120,8 +125,8 @@ static float bubble_at(const void *context, float r) {
     return b->height * b->radius * ptie_projection_at(&b->disc, r / b->radius);
 }
 
-static void stamp_pockets(float *map, const ptie_scene *scene, const ptie_axes *axes, const row *r, vortex *v,
-                          bubble *b) {
+static void stamp_pockets(float *map, const ptie_scene *scene, const ptie_axes *axes, const row *r,
+                          vortex *v, bubble *b) {
     ptie_train train = train_of(r, scene);
     float vortex_height = v->height, bubble_height = b->height;
     for (int64_t n = train.first; n <= train.last; n++) {
@@ -139,10 +144,13 @@ static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *ra
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, -0.15, 0.3, 0.5);
     row r = row_draw(scene, random, &axes);
     double air = ptie_ambient_refractivity();
-    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene), depth = ptie_random_uniform(random, 0.2, 1);
-    double deficit = ptie_random_uniform(random, 0.03, 0.3), edge = ptie_random_uniform(random, 0.08, 0.3);
+    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene),
+           depth = ptie_random_uniform(random, 0.2, 1);
+    double deficit = ptie_random_uniform(random, 0.03, 0.3),
+           edge = ptie_random_uniform(random, 0.08, 0.3);
     double warm = PTIE_AMBIENT_K / ptie_random_uniform(random, 330, 1000);
-    double other = ptie_gas_refractivity(ptie_gas_get(PTIE_CARBON_DIOXIDE), PTIE_AMBIENT_PA, PTIE_AMBIENT_K);
+    double other =
+        ptie_gas_refractivity(ptie_gas_get(PTIE_CARBON_DIOXIDE), PTIE_AMBIENT_PA, PTIE_AMBIENT_K);
     bool vortices = ptie_chance(random, 0.5), hot = ptie_chance(random, 0.7);
     vortex v = {.height = vortices ? (float)(path * depth * air) : 0};
     bubble b = {.height = (float)(path * (hot ? air * (warm - 1) : other - air))};

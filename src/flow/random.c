@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Random phase objects: islands cut out of a random field, overlapping smooth bodies, and von Karman
-   phase screens.  docs/math.md (F4). */
+/* Random phase objects: islands cut out of a random field, overlapping smooth bodies, and von
+   Karman phase screens.  docs/math.md (F4). */
 #include <math.h>
 
 #include "flow/morphology.h"
@@ -8,10 +8,10 @@
 
 typedef struct island {
     ptie_turbulence turbulence;
-    float level, edge; /* of the field that becomes an island; softness of its shore */
-    float relief;      /* share of the field's own relief on the islands */
+    float level, edge;      /* of the field that becomes an island; softness of its shore */
+    float relief;           /* share of the field's own relief on the islands */
     float radius, softness; /* of the window, units */
-    float tall;        /* 1, or rad per unit of the field */
+    float tall;             /* 1, or rad per unit of the field */
 } island;
 
 static float window(const island *o, float x, float y) {
@@ -35,8 +35,10 @@ static float screen_at(const void *flow, float x, float y) {
     return o->tall * field[0];
 }
 
-static ptie_status draw_field(island *o, const ptie_scene *scene, ptie_random *random, double low, double high) {
-    double outer = ptie_random_log_uniform(random, low, high), speed = ptie_speed_draw(scene, random);
+static ptie_status draw_field(island *o, const ptie_scene *scene, ptie_random *random, double low,
+                              double high) {
+    double outer = ptie_random_log_uniform(random, low, high),
+           speed = ptie_speed_draw(scene, random);
     double period = fmax(2.5, 2.5 * outer);
     ptie_turbulence_params params = {.key = ptie_key_draw(random),
                                      .period = period,
@@ -49,12 +51,14 @@ static ptie_status draw_field(island *o, const ptie_scene *scene, ptie_random *r
 }
 
 /* Ellipses of all sizes that drift about. */
-static void draw_bodies(float *map, const ptie_scene *scene, ptie_random *random, const ptie_axes *axes) {
+static void draw_bodies(float *map, const ptie_scene *scene, ptie_random *random,
+                        const ptie_axes *axes) {
     int32_t count = ptie_random_integer(random, 2, 10);
     double speed = 0.5 * ptie_speed_draw(scene, random);
     ptie_clear(map, scene);
     for (int32_t i = 0; i < count; i++) {
-        double span = (double)(axes->end - axes->start) + 0.4, x = ptie_random_uniform(random, 0, span);
+        double span = (double)(axes->end - axes->start) + 0.4,
+               x = ptie_random_uniform(random, 0, span);
         double pace = ptie_random_uniform(random, 0.4, 1) * speed;
         ptie_spot spot = {.y = ptie_draw(random, (double)-axes->side, (double)axes->side)};
         spot.x = axes->start - 0.2f + (float)fmod(x + pace * scene->time_s, span);
@@ -68,7 +72,7 @@ static void draw_bodies(float *map, const ptie_scene *scene, ptie_random *random
 
 static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ANY, 0.35, 0.65, 0.3);
-    island o = {.level = ptie_draw(random, -0.3, 1), .edge = ptie_draw_log(random, 0.1, 2.5)};
+    island o = {.level = ptie_draw(random, -0.3, 0.8), .edge = ptie_draw_log(random, 0.1, 2.5)};
     o.relief = ptie_draw(random, 0, 0.4);
     o.radius = ptie_draw(random, 0.25, 0.8);
     o.softness = ptie_draw(random, 0.05, 0.25);

@@ -6,7 +6,9 @@
 
 #define PI 3.14159265358979323846
 
-static int32_t smaller(int32_t a, int32_t b) { return a < b ? a : b; }
+static int32_t smaller(int32_t a, int32_t b) {
+    return a < b ? a : b;
+}
 
 static double heading_draw(ptie_random *random, ptie_heading heading) {
     double tilt = 8.0 * PI / 180 * ptie_random_normal(random);
@@ -54,7 +56,9 @@ double ptie_speed_draw(const ptie_scene *scene, ptie_random *random) {
     return ptie_random_log_uniform(random, 2, 12) / ptie_scene_unit_m(scene);
 }
 
-double ptie_scene_wavenumber(const ptie_scene *scene) { return 2 * PI / scene->wavelength_m; }
+double ptie_scene_wavenumber(const ptie_scene *scene) {
+    return 2 * PI / scene->wavelength_m;
+}
 
 void ptie_paint(float *map, const ptie_scene *scene, const ptie_axes *axes, ptie_point point,
                 const void *flow) {
@@ -85,8 +89,8 @@ static place place_of(const ptie_axes *axes, float x, float y) {
                    (double)axes->origin_y + s * along + c * across};
 }
 
-void ptie_stamp(float *map, const ptie_scene *scene, const ptie_axes *axes, float x, float y, float reach,
-                ptie_radial_point radial, const void *context) {
+void ptie_stamp(float *map, const ptie_scene *scene, const ptie_axes *axes, float x, float y,
+                float reach, ptie_radial_point radial, const void *context) {
     place centre = place_of(axes, x, y);
     double radius = (double)(reach / axes->pixel);
     int32_t top = (int32_t)fmax(0, ceil(centre.y - radius));
@@ -94,7 +98,8 @@ void ptie_stamp(float *map, const ptie_scene *scene, const ptie_axes *axes, floa
     int32_t left = (int32_t)fmax(0, ceil(centre.x - radius));
     int32_t right = (int32_t)fmin(scene->width - 1, floor(centre.x + radius));
     for (int32_t row = top; row <= bottom; row++) {
-        float dy = (float)(row - centre.y) * axes->pixel, *line = map + (size_t)row * (size_t)scene->width;
+        float dy = (float)(row - centre.y) * axes->pixel,
+              *line = map + (size_t)row * (size_t)scene->width;
         for (int32_t column = left; column <= right; column++) {
             float dx = (float)(column - centre.x) * axes->pixel, r = sqrtf(dx * dx + dy * dy);
             if (r < reach) line[column] += radial(context, r);
@@ -108,7 +113,8 @@ typedef struct spot_form {
 } spot_form;
 
 static spot_form form_of(const ptie_axes *axes, const ptie_spot *spot) {
-    double along = (double)(spot->along / axes->pixel), across = (double)(spot->across / axes->pixel);
+    double along = (double)(spot->along / axes->pixel),
+           across = (double)(spot->across / axes->pixel);
     double turn = (double)(axes->mirror * spot->angle);
     double flow = atan2((double)axes->sine, (double)axes->cosine) + turn;
     double c = cos(flow), s = sin(flow), p = 1 / (along * along), q = 1 / (across * across);
@@ -137,7 +143,8 @@ void ptie_splat(float *map, const ptie_scene *scene, const ptie_axes *axes, cons
         if (left > right) continue;
         double dx = left - f.x;
         /* A Gaussian along a row by two products per pixel: g(x+1) = g(x) r(x), r(x+1) = r(x) q. */
-        double value = (double)spot->height * exp(-0.5 * (f.a * dx * dx + 2 * f.b * dx * dy + f.c * dy * dy));
+        double value =
+            (double)spot->height * exp(-0.5 * (f.a * dx * dx + 2 * f.b * dx * dy + f.c * dy * dy));
         double ratio = exp(-f.a * (dx + 0.5) - f.b * dy);
         float *row = map + (size_t)y * (size_t)scene->width;
         for (int32_t x = left; x <= right; x++) {
@@ -177,7 +184,9 @@ float ptie_draw_log(ptie_random *random, double low, double high) {
     return (float)ptie_random_log_uniform(random, low, high);
 }
 
-float ptie_bell(float t) { return expf(-0.5f * t * t); }
+float ptie_bell(float t) {
+    return expf(-0.5f * t * t);
+}
 
 float ptie_smoothstep(float t) {
     if (t <= 0) return 0;
@@ -185,4 +194,6 @@ float ptie_smoothstep(float t) {
     return t * t * (3 - 2 * t);
 }
 
-float ptie_rise(float t) { return 1 / (1 + expf(-2 * t)); }
+float ptie_rise(float t) {
+    return 1 / (1 + expf(-2 * t));
+}

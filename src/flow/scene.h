@@ -12,8 +12,8 @@ typedef struct ptie_scene {
     uint64_t alignment; /* not 0: flows with the same number share direction and place */
 } ptie_scene;
 
-/* Flow coordinates: x runs downstream from the flow's origin, y across it, both in units of the frame's
-   shorter side. */
+/* Flow coordinates: x runs downstream from the flow's origin, y across it, both in units of the
+   frame's shorter side. */
 typedef struct ptie_axes {
     float origin_x, origin_y; /* px */
     float cosine, sine;       /* of the flow direction; image rows run downwards */
@@ -29,9 +29,9 @@ typedef enum ptie_heading {
     PTIE_HEADING_ANY
 } ptie_heading;
 
-/* Draws a direction and an origin.  `origin` is where the origin lies along the flow: 0 at the frame's
-   upstream end, 1 at its downstream end; `across` is its largest distance from the centre line as a
-   share of the frame's half. */
+/* Draws a direction and an origin.  `origin` is where the origin lies along the flow: 0 at the
+   frame's upstream end, 1 at its downstream end; `across` is its largest distance from the centre
+   line as a share of the frame's half. */
 ptie_axes ptie_axes_draw(const ptie_scene *scene, ptie_random *random, ptie_heading heading,
                          double origin_low, double origin_high, double across);
 
@@ -62,11 +62,11 @@ void ptie_splat(float *map, const ptie_scene *scene, const ptie_axes *axes, cons
 
 /* Adds radial(context, r), r in units from the point (x, y), where r < reach. */
 typedef float (*ptie_radial_point)(const void *context, float r);
-void ptie_stamp(float *map, const ptie_scene *scene, const ptie_axes *axes, float x, float y, float reach,
-                ptie_radial_point radial, const void *context);
+void ptie_stamp(float *map, const ptie_scene *scene, const ptie_axes *axes, float x, float y,
+                float reach, ptie_radial_point radial, const void *context);
 
-/* Things that follow each other downstream at a spacing, born upstream from the hash of their number:
-   calls for the numbers whose place (number * spacing + shift) lies in start .. end. */
+/* Things that follow each other downstream at a spacing, born upstream from the hash of their
+   number: calls for the numbers whose place (number * spacing + shift) lies in start .. end. */
 typedef struct ptie_train {
     double spacing, shift; /* units; shift = speed * time */
     int64_t first, last;

@@ -7,6 +7,8 @@
 #include "flow/gas.h"
 #include "flow/morphology.h"
 
+#define GAMMA 1.4 /* of air */
+
 /* Parametric shapes. */
 typedef enum shock_kind { SHOCK_BLAST, SHOCK_BOW, SHOCK_LATTICE, SHOCK_KINDS } shock_kind;
 
@@ -15,9 +17,10 @@ typedef struct shock {
     shock_kind kind;
     int count;
     float x[MOST_SHOCKS], y[MOST_SHOCKS], radius[MOST_SHOCKS], height[MOST_SHOCKS];
-    float thickness, tail, dip; /* of a front; length of what follows it, units; share of Friedlander's dip */
-    float slope, standoff;             /* bow: of its far flanks; from the origin to its nose, units */
-    float half, cell, fade;            /* lattice: half-height, length of a cell, fading, units */
+    float thickness, tail,
+        dip; /* of a front; length of what follows it, units; share of Friedlander's dip */
+    float slope, standoff;  /* bow: of its far flanks; from the origin to its nose, units */
+    float half, cell, fade; /* lattice: half-height, length of a cell, fading, units */
 } shock;
 
 /* d: distance ahead of the front.  A steep rise, then Friedlander's decay. */
@@ -56,15 +59,16 @@ static float at(const void *flow, float x, float y) {
     return sum;
 }
 
-/* Sedov's law from a radius now (`start`) and a front speed now: R = start (1 + 5/2 speed t / start)^(2/5).
-   Beyond `most` the next blast is seen, so that a recording never runs empty. */
+/* Sedov's law from a radius now (`start`) and a front speed now: R = start (1 + 5/2 speed t /
+   start)^(2/5). Beyond `most` the next blast is seen, so that a recording never runs empty. */
 static double blast_radius(double start, double speed, double most, double time_s) {
     double life = (pow(most / start, 2.5) - 1) * start / (2.5 * speed);
     double since = fmod(time_s, life);
     return start * pow(1 + 2.5 * speed * since / start, 0.4);
 }
 
-static void draw_blasts(shock *s, const ptie_scene *scene, ptie_random *random, const ptie_axes *axes) {
+static void draw_blasts(shock *s, const ptie_scene *scene, ptie_random *random,
+                        const ptie_axes *axes) {
     double speed = ptie_speed_draw(scene, random);
     s->count = ptie_random_integer(random, 1, MOST_SHOCKS);
     for (int i = 0; i < MOST_SHOCKS; i++) {
@@ -72,8 +76,16 @@ static void draw_blasts(shock *s, const ptie_scene *scene, ptie_random *random, 
         s->x[i] = ptie_draw(random, 0, (double)axes->end);
         s->y[i] = ptie_draw(random, (double)-axes->side, (double)axes->side);
         s->height[i] = ptie_draw(random, 0.4, 1);
-        s->radius[i] = (float)blast_radius(start, speed, 1.2, scene->time_s);
+        s->radius[i] = (float)blast_radius(start, speed, 0.75, scene->time_s);
     }
+}
+
+/* Standing shocks breathe by a few percent, a few thousand times per second. */
+static double beat_draw(const ptie_scene *scene, ptie_random *random) {
+    double amplitude = ptie_random_uniform(random, 0.02, 0.1),
+           phase = ptie_random_uniform(random, 0, 6.283185307);
+    double rate_hz = ptie_random_log_uniform(random, 500, 5000);
+    return amplitude * sin(6.283185307179586 * fmod(rate_hz * scene->time_s, 1) + phase);
 }
 
 static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *random) {
@@ -87,7 +99,7 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     s.half = ptie_draw(random, 0.04, 0.2);
     s.cell = s.half * ptie_draw(random, 2, 7);
     s.fade = ptie_draw(random, 0.4, 2) * axes.end;
-    double beat = ptie_random_uniform(random, 0.02, 0.1) * sin(ptie_speed_draw(scene, random) * 8 * scene->time_s);
+    double beat = beat_draw(scene, random);
     draw_blasts(&s, scene, random, &axes);
     s.standoff *= (float)(1 + beat);
     s.cell *= (float)(1 + beat);
@@ -120,14 +132,16 @@ static float shell_at(const void *context, float r) {
     return s->rad * s->radius * ptie_projection_at(&s->projection, r / s->radius);
 }
 
-static void draw_shells(float *map, const ptie_scene *scene, ptie_random *random, const ptie_axes *axes,
-                        double rad) {
+static void draw_shells(float *map, const ptie_scene *scene, ptie_random *random,
+                        const ptie_axes *axes, double rad) {
     double mach = ptie_random_uniform(random, 1.05, 2.5);
-    blast b = {.jump = ptie_shock_density(1.4, mach) - 1, .decay = ptie_random_uniform(random, 0.15, 0.6)};
+    blast b = {.jump = ptie_shock_density(GAMMA, mach) - 1,
+               .decay = ptie_random_uniform(random, 0.15, 0.6)};
     b.strong = ptie_chance(random, 0.25);
-    if (b.strong) b.jump = ptie_shock_density(1.4, 20) - 1;
+    if (b.strong) b.jump = ptie_shock_density(GAMMA, 20) - 1;
     shell s = {.rad = (float)rad};
     shock places = {0};
+    ptie_clear(map, scene);
     draw_blasts(&places, scene, random, axes);
     ptie_projection_fill(&s.projection, blast_density, &b, 1);
     for (int i = 0; i < (places.count + 1) / 2; i++) {
@@ -136,7 +150,7 @@ static void draw_shells(float *map, const ptie_scene *scene, ptie_random *random
     }
 }
 
-/* A bow shock, its strength from the local slope; lattices belong to the jet. */
+/* A bow shock, its strength from the local slope. */
 typedef struct bow_shock {
     float slope, standoff, tail, mach, rad, edge;
 } bow_shock;
@@ -144,31 +158,68 @@ typedef struct bow_shock {
 static float bow_at(const void *flow, float x, float y) {
     const bow_shock *b = flow;
     float aside = y / b->standoff, root = sqrtf(1 + aside * aside);
-    float d = x - b->standoff * (b->slope * (root - 1) - 1); /* behind the front, along the stream */
+    float d = x - b->standoff * (b->slope * (root - 1) - 1); /* behind the front, downstream */
     if (d < -4 * b->edge) return 0;
-    float tangent = b->slope * aside / root; /* dx / dy: normal Mach number is M cos(atan(dx / dy)) */
-    float normal2 = b->mach * b->mach / (1 + tangent * tangent);
-    if (normal2 <= 1) return 0;
-    float jump = 2.4f * normal2 / (0.4f * normal2 + 2) - 1;
+    float tangent = b->slope * aside / root; /* dx / dy of the front */
+    float normal = b->mach / sqrtf(1 + tangent * tangent);
+    if (normal <= 1) return 0;
+    float jump = (float)ptie_shock_density(GAMMA, (double)normal) - 1;
     return b->rad * jump * ptie_rise(d / b->edge) * expf(-fmaxf(d, 0) / b->tail);
+}
+
+static void draw_bow(float *map, const ptie_scene *scene, ptie_random *random,
+                     const ptie_axes *axes, double rad, double beat) {
+    bow_shock b = {.standoff = ptie_draw(random, 0.05, 0.2),
+                   .mach = ptie_draw(random, 1.3, 3),
+                   .rad = (float)rad,
+                   .edge = 0.7f * axes->pixel};
+    b.tail = b.standoff * ptie_draw(random, 1, 6);
+    b.slope = sqrtf(b.mach * b.mach - 1); /* far out it is a Mach wave: dx / dy = cot(mu) */
+    b.standoff *= (float)(1 + beat);
+    ptie_paint(map, scene, axes, bow_at, &b);
+}
+
+/* An oblique shock at each side of a wedge, which is opaque. */
+typedef struct wedge {
+    float shock, surface; /* slopes dy / dx */
+    float rad, relief,
+        edge; /* rad behind the shock; length over which it weakens; softness; units */
+} wedge;
+
+static float wedge_at(const void *flow, float x, float y) {
+    const wedge *w = flow;
+    if (x < -w->edge) return 0;
+    float aside = fabsf(y), steep = sqrtf(1 + w->shock * w->shock);
+    float inside = ptie_rise((w->shock * x - aside) / (w->edge * steep));
+    float outside = ptie_rise((aside - w->surface * x) / w->edge);
+    return w->rad * inside * outside * w->relief / (w->relief + fmaxf(x, 0));
+}
+
+static void draw_wedge(float *map, const ptie_scene *scene, ptie_random *random,
+                       const ptie_axes *axes, double rad, double beat) {
+    double mach = ptie_random_uniform(random, 1.5, 3.5), mach_angle = asin(1 / mach);
+    double share = ptie_random_uniform(random, 0.2, 0.7) * (1 + beat);
+    double beta = mach_angle + share * (1.1 - mach_angle); /* 63 deg: the shock is still attached */
+    double jump = ptie_shock_density(GAMMA, mach * sin(beta)) - 1;
+    wedge w = {.shock = (float)tan(beta),
+               .surface = (float)tan(ptie_oblique_deflection(GAMMA, mach, beta)),
+               .rad = (float)(rad * jump),
+               .relief = ptie_draw(random, 0.5, 3),
+               .edge = 0.7f * axes->pixel};
+    ptie_paint(map, scene, axes, wedge_at, &w);
 }
 
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, 0.15, 0.4, 0.4);
-    double rad = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene) * ptie_ambient_refractivity();
-    bow_shock b = {.standoff = ptie_draw(random, 0.05, 0.2), .mach = ptie_draw(random, 1.3, 3)};
-    b.tail = b.standoff * ptie_draw(random, 1, 6);
-    b.slope = sqrtf(b.mach * b.mach - 1); /* far out it is a Mach wave: dx / dy = cot(mu) */
-    b.edge = 0.7f * axes.pixel;
-    b.rad = (float)rad * ptie_draw(random, 0.05, 0.4);
-    double beat = ptie_random_uniform(random, 0.02, 0.1) * sin(ptie_speed_draw(scene, random) * 8 * scene->time_s);
-    b.standoff *= (float)(1 + beat);
-    if (ptie_chance(random, 0.4)) {
-        ptie_paint(map, scene, &axes, bow_at, &b);
-        return PTIE_OK;
-    }
-    ptie_clear(map, scene);
-    draw_shells(map, scene, random, &axes, rad);
+    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene);
+    double rad = path * ptie_ambient_refractivity(), depth = ptie_random_uniform(random, 0.05, 0.4);
+    double beat = beat_draw(scene, random), choice = ptie_random_uniform(random, 0, 1);
+    if (choice < 0.55)
+        draw_shells(map, scene, random, &axes, rad);
+    else if (choice < 0.75)
+        draw_wedge(map, scene, random, &axes, rad * depth, beat);
+    else
+        draw_bow(map, scene, random, &axes, rad * depth, beat);
     return PTIE_OK;
 }
 

@@ -39,7 +39,9 @@ ptie_status ptie_stream_draw(ptie_stream *stream, const ptie_scene *scene, ptie_
     return ptie_turbulence_create(&stream->turbulence, &params);
 }
 
-void ptie_stream_free(ptie_stream *stream) { ptie_turbulence_free(&stream->turbulence); }
+void ptie_stream_free(ptie_stream *stream) {
+    ptie_turbulence_free(&stream->turbulence);
+}
 
 ptie_parcel ptie_stream_at(const ptie_stream *stream, float x, float y) {
     float field[PTIE_TURBULENCE_FIELDS];

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A stream of gas from a source: it widens, meanders, and its boundary is folded by turbulence that it
-   carries downstream.  Plumes of every kind are profiles over the coordinates it gives.  docs/math.md (F5). */
+/* A stream of gas from a source: it widens, meanders, and its boundary is folded by turbulence that
+   it carries downstream.  Plumes of every kind are profiles over the coordinates it gives.
+   docs/math.md (F5). */
 #ifndef PTIE_FLOW_STREAM_H
 #define PTIE_FLOW_STREAM_H
 
@@ -8,11 +9,11 @@
 
 typedef struct ptie_stream {
     ptie_turbulence turbulence;
-    float radius, spread; /* half-width at the source, its growth per unit */
-    float onset;          /* distance over which the turbulence sets in */
-    float folding;        /* displacement by the turbulence, in half-widths */
+    float radius, spread;              /* half-width at the source, its growth per unit */
+    float onset;                       /* distance over which the turbulence sets in */
+    float folding;                     /* displacement by the turbulence, in half-widths */
     float sway, sway_wave, sway_phase; /* meandering: amplitude in half-widths, rad per unit, rad */
-    double speed;         /* units per second */
+    double speed;                      /* units per second */
 } ptie_stream;
 
 /* Ranges a stream is drawn from; all in units but `folding`. */

@@ -39,7 +39,8 @@ static void tabulate(spectrum_table *table, const ptie_turbulence_params *params
     double step = 1 / params->period; /* cycles per unit between modes */
     for (int32_t k2 = 1; k2 <= limit * limit; k2++) {
         double f = sqrt(k2) * step;
-        table->amplitude[k2] = (float)sqrt(ptie_von_karman(f, params->outer, params->inner) * step * step);
+        table->amplitude[k2] =
+            (float)sqrt(ptie_von_karman(f, params->outer, params->inner) * step * step);
         table->turns[k2] = (float)(params->turns * cbrt(f * f * params->outer * params->outer));
     }
     for (int32_t ky = -limit; ky <= limit; ky++)
@@ -50,15 +51,15 @@ static void tabulate(spectrum_table *table, const ptie_turbulence_params *params
         }
 }
 
-/* Fourier symbol of the cubic B-spline sampled at its nodes: dividing by it makes the spline pass through
-   the field's values. */
+/* Fourier symbol of the cubic B-spline sampled at its nodes: dividing by it makes the spline pass
+   through the field's values. */
 static double spline_symbol(int32_t mode, int32_t cells) {
     return (2 + cos(TWO_PI * mode / cells)) / 3;
 }
 
 /* Two complex normal numbers of this mode, turned by time, scaled; one for each plane. */
-static void draw_mode(float *plane_a, float *plane_b, int32_t kx, int32_t ky, uint64_t key, float scale,
-                      float turns) {
+static void draw_mode(float *plane_a, float *plane_b, int32_t kx, int32_t ky, uint64_t key,
+                      float scale, float turns) {
     uint32_t counter[4] = {(uint32_t)(uint16_t)kx << 16 | (uint16_t)ky, PTIE_STREAM_TEXTURE, 0, 0};
     uint32_t philox_key[2] = {(uint32_t)key, (uint32_t)(key >> 32)}, word[4];
     ptie_philox(word, counter, philox_key);
@@ -122,7 +123,8 @@ static ptie_status synthesise(ptie_turbulence *turbulence, const ptie_turbulence
         table.turns = ptie_slice(&slicer, rings, sizeof(float));
         symbol = ptie_slice(&slicer, n, sizeof(double));
         if (pass == 0)
-            PTIE_TRY_DONE(ptie_alloc_status(&slicer.base, slicer.used, 1, "scratch of the turbulence"));
+            PTIE_TRY_DONE(
+                ptie_alloc_status(&slicer.base, slicer.used, 1, "scratch of the turbulence"));
     }
     tabulate(&table, params);
     for (int32_t i = 0; i < cells; i++) symbol[i] = spline_symbol(i, cells);
@@ -173,7 +175,8 @@ static int32_t spline_weights(float weight[4], float u, int32_t cells) {
 void ptie_turbulence_at(const ptie_turbulence *turbulence, float x, float y, float fields[FIELDS]) {
     int32_t cells = turbulence->cells;
     float across[4], down[4], sum[FIELDS] = {0};
-    int32_t left = spline_weights(across, x * turbulence->cells_per_unit - turbulence->drift, cells);
+    int32_t left =
+        spline_weights(across, x * turbulence->cells_per_unit - turbulence->drift, cells);
     int32_t top = spline_weights(down, y * turbulence->cells_per_unit, cells);
     for (int j = 0; j < 4; j++) {
         size_t row = (size_t)((top + j) & (cells - 1)) * (size_t)(cells + 3) + (size_t)left;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Turbulence: four independent random fields of von Karman's spectrum on a periodic tile, interpolated
-   smoothly, carried downstream, and changing as they go.  docs/math.md (F4). */
+/* Turbulence: four independent random fields of von Karman's spectrum on a periodic tile,
+   interpolated smoothly, carried downstream, and changing as they go.  docs/math.md (F4). */
 #ifndef PTIE_FLOW_TURBULENCE_H
 #define PTIE_FLOW_TURBULENCE_H
 
@@ -9,20 +9,20 @@
 #define PTIE_TURBULENCE_FIELDS 4
 
 typedef struct ptie_turbulence_params {
-    uint64_t key;       /* names the realisation */
-    double period;      /* side of the tile, units */
-    double outer, inner;/* outer and inner scale L0, l0, units; 0 < inner < outer */
-    double drift;       /* way travelled downstream, units */
-    double turns;       /* turns of an eddy of outer size since the start; finer ones turn faster */
-    int32_t cells;      /* per side; a power of two, 16 .. 4096.  More cells add finer eddies and leave
-                           the others as they are */
+    uint64_t key;        /* names the realisation */
+    double period;       /* side of the tile, units */
+    double outer, inner; /* outer and inner scale L0, l0, units; 0 < inner < outer */
+    double drift;        /* way travelled downstream, units */
+    double turns;  /* turns of an eddy of outer size since the start; finer ones turn faster */
+    int32_t cells; /* per side; a power of two, 16 .. 4096.  More cells add finer eddies and keep
+                      the coarse ones */
 } ptie_turbulence_params;
 
 typedef struct ptie_turbulence {
     float *values; /* (cells, cells + 3, fields), B-spline coefficients */
     int32_t cells;
     float cells_per_unit, drift; /* drift in cells */
-    float screen_rad; /* standard deviation of a phase screen with r0 = 1 unit */
+    float screen_rad;            /* standard deviation of a phase screen with r0 = 1 unit */
 } ptie_turbulence;
 
 ptie_status ptie_turbulence_create(ptie_turbulence *out, const ptie_turbulence_params *params);
