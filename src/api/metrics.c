@@ -28,10 +28,11 @@ static ptie_status check_rect(ptie_rect r, int32_t width, int32_t height, const 
                         r.width_px <= width && r.x_px <= width - r.width_px &&
                         r.height_px <= height && r.y_px <= height - r.height_px;
     if (inside) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EINVAL,
-                     "ptie_regions_from_rects: %s leaves the image or is empty (expected within %d x %d, "
-                     "found %d x %d at x=%d, y=%d)",
-                     name, width, height, r.width_px, r.height_px, r.x_px, r.y_px);
+    return PTIE_FAIL(
+        PTIE_EINVAL,
+        "ptie_regions_from_rects: %s leaves the image or is empty (expected within %d x %d, "
+        "found %d x %d at x=%d, y=%d)",
+        name, width, height, r.width_px, r.height_px, r.x_px, r.y_px);
 }
 
 ptie_status ptie_regions_from_rects(uint8_t *labels, int32_t width_px, int32_t height_px,

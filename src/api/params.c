@@ -33,7 +33,8 @@ ptie_status ptie_params_read(void *params, size_t size, const void *given, const
 
 ptie_status ptie_check_pointer(const void *pointer, const char *where, const char *name) {
     if (pointer) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EINVAL, "%s: %s is missing (expected a pointer, found NULL)", where, name);
+    return PTIE_FAIL(PTIE_EINVAL, "%s: %s is missing (expected a pointer, found NULL)", where,
+                     name);
 }
 
 ptie_status ptie_check_integer(int64_t value, int64_t low, int64_t high, const char *where,
@@ -52,15 +53,16 @@ ptie_status ptie_check_positive(double value, const char *where, const char *nam
 ptie_status ptie_check_number(double value, double low, double high, const char *where,
                               const char *name) {
     if (value >= low && value <= high) return PTIE_OK; /* false for NaN */
-    return PTIE_FAIL(PTIE_EINVAL, "%s: %s is out of range (expected %g..%g, found %g)", where, name, low,
-                     high, value);
+    return PTIE_FAIL(PTIE_EINVAL, "%s: %s is out of range (expected %g..%g, found %g)", where, name,
+                     low, high, value);
 }
 
 ptie_status ptie_check_scratch(const void *scratch, const char *where) {
     PTIE_TRY(ptie_check_pointer(scratch, where, "scratch"));
     if ((uintptr_t)scratch % PTIE_ALIGNMENT == 0) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EINVAL,
-                     "%s: scratch is not aligned (expected a multiple of %d as ptie_scratch_alloc gives, "
-                     "found %p)",
-                     where, PTIE_ALIGNMENT, scratch);
+    return PTIE_FAIL(
+        PTIE_EINVAL,
+        "%s: scratch is not aligned (expected a multiple of %d as ptie_scratch_alloc gives, "
+        "found %p)",
+        where, PTIE_ALIGNMENT, scratch);
 }

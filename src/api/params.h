@@ -7,11 +7,11 @@
 
 #include "base/status.h"
 
-/* Reads a caller's parameter struct, which begins with its uint32_t struct_size, over the defaults that
-   `params` (of `size` bytes) already holds.  A shorter struct comes from an older caller: the fields it
-   does not have keep their defaults.  A longer one comes from a newer caller: accepted if what this
-   version does not know is zero.  PTIE_EINVAL otherwise, and when `given` is NULL or was not
-   initialised. */
+/* Reads a caller's parameter struct, which begins with its uint32_t struct_size, over the defaults
+   that `params` (of `size` bytes) already holds.  A shorter struct comes from an older caller: the
+   fields it does not have keep their defaults.  A longer one comes from a newer caller: accepted if
+   what this version does not know is zero.  PTIE_EINVAL otherwise, and when `given` is NULL or was
+   not initialised. */
 ptie_status ptie_params_read(void *params, size_t size, const void *given, const char *where);
 
 ptie_status ptie_check_pointer(const void *pointer, const char *where, const char *name);

@@ -41,9 +41,9 @@ ptie_status ptie_solver_run(const ptie_solver *solver, float *phase_rad, const f
     PTIE_TRY(ptie_check_pointer(phase_rad, where, "phase_rad"));
     PTIE_TRY(ptie_check_pointer(i_plus, where, "i_plus"));
     if (!i_zero && !i_minus)
-        return PTIE_FAIL(PTIE_EINVAL,
-                         "%s: a second plane is missing (expected i_zero, i_minus or both, found NULL)",
-                         where);
+        return PTIE_FAIL(
+            PTIE_EINVAL,
+            "%s: a second plane is missing (expected i_zero, i_minus or both, found NULL)", where);
     PTIE_TRY(ptie_check_scratch(scratch, where));
     return ptie_tie_solve(solver, phase_rad, i_plus, i_zero, i_minus, scratch);
 }

@@ -24,10 +24,8 @@ static void plan_transforms(ptie_fft *fft, float *image, float *spectrum) {
         fft->inverse = fftwf_plan_dft_c2r_2d(h, w, complex_spectrum, image, flags);
         break;
     case PTIE_FFT_MIRROR:
-        fft->forward =
-            fftwf_plan_r2r_2d(h, w, image, spectrum, FFTW_REDFT10, FFTW_REDFT10, flags);
-        fft->inverse =
-            fftwf_plan_r2r_2d(h, w, spectrum, image, FFTW_REDFT01, FFTW_REDFT01, flags);
+        fft->forward = fftwf_plan_r2r_2d(h, w, image, spectrum, FFTW_REDFT10, FFTW_REDFT10, flags);
+        fft->inverse = fftwf_plan_r2r_2d(h, w, spectrum, image, FFTW_REDFT01, FFTW_REDFT01, flags);
         break;
     case PTIE_FFT_COMPLEX:
         fft->forward =

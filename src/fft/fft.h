@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Two-dimensional transforms over FFTW: real periodic (r2c), real mirrored (DCT-II), complex.
- * Plans are const and thread-safe once made; buffers must be 64-byte aligned.  FFTW_ESTIMATE, so that the
- * same plan (and the same bits) comes out every time.
+ * Plans are const and thread-safe once made; buffers must be 64-byte aligned.  FFTW_ESTIMATE, so
+ * that the same plan (and the same bits) comes out every time.
  */
 #ifndef PTIE_FFT_FFT_H
 #define PTIE_FFT_FFT_H

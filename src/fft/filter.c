@@ -30,8 +30,8 @@ void ptie_fft_filter_apply(const ptie_fft *fft, float *spectrum, const float *fi
     }
 }
 
-/* A half spectrum leaves out the conjugate of every column but the first and, for an even width, the
-   last. */
+/* A half spectrum leaves out the conjugate of every column but the first and, for an even width,
+   the last. */
 static double multiplicity(const ptie_fft *fft, int32_t column) {
     if (fft->kind != PTIE_FFT_REAL) return 1;
     return column == 0 || 2 * column == fft->width ? 1 : 2;

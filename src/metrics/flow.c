@@ -22,14 +22,15 @@ static region measure(const float *map, const uint8_t *labels, size_t pixels, ui
     return r;
 }
 
-/* Central difference at index `i` of a line with `n` points; one-sided at its ends, 0 on a single point. */
+/* Central difference at index `i` of a line with `n` points; one-sided at its ends. */
 static double slope(const float *line, int32_t i, int32_t n, int32_t stride) {
     const ptrdiff_t low = i > 0 ? i - 1 : 0, high = i < n - 1 ? i + 1 : n - 1;
     if (high == low) return 0;
     return ((double)line[high * stride] - (double)line[low * stride]) / (double)(high - low);
 }
 
-static double mean_gradient(const float *map, const uint8_t *labels, int32_t width, int32_t height) {
+static double mean_gradient(const float *map, const uint8_t *labels, int32_t width,
+                            int32_t height) {
     double sum = 0;
     size_t count = 0;
     for (int32_t y = 0; y < height; y++) {
@@ -50,10 +51,11 @@ ptie_status ptie_metrics_flow(ptie_flow_metrics *out, const float *map, const ui
     const region jet = measure(map, labels, pixels, PTIE_JET);
     const region background = measure(map, labels, pixels, PTIE_BACKGROUND);
     if (jet.count == 0 || background.count == 0)
-        return PTIE_FAIL(PTIE_EINVAL,
-                         "labels: a region is empty (expected pixels of both, found %zu of the jet and "
-                         "%zu of the background)",
-                         jet.count, background.count);
+        return PTIE_FAIL(
+            PTIE_EINVAL,
+            "labels: a region is empty (expected pixels of both, found %zu of the jet and "
+            "%zu of the background)",
+            jet.count, background.count);
     *out = (ptie_flow_metrics){
         .mgm = mean_gradient(map, labels, width, height),
         .sbr = jet.mean / background.mean,

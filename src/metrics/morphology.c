@@ -25,8 +25,8 @@ void ptie_mask_grow(uint8_t *mask, int32_t width, int32_t height, int32_t radius
 }
 
 /* Writes to `size` of every pixel connected with `seed` how many there are; returns that number. */
-static int32_t flood(int32_t *size, const uint8_t *mask, int32_t width, int32_t height, int32_t seed,
-                     int32_t *queue) {
+static int32_t flood(int32_t *size, const uint8_t *mask, int32_t width, int32_t height,
+                     int32_t seed, int32_t *queue) {
     const int32_t seen = -1;
     int32_t count = 0;
     size[seed] = seen;

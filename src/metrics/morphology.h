@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Sets every pixel within `radius` (in x and in y) of one that is `value` to `value`: grows the inside
-   (1) or the outside (0).  Beyond the frame is neither.  work: as many bytes as the mask. */
+/* Sets every pixel within `radius` (in x and in y) of one that is `value` to `value`: grows the
+   inside (1) or the outside (0).  Beyond the frame is neither.  work: as many bytes as the mask. */
 void ptie_mask_grow(uint8_t *mask, int32_t width, int32_t height, int32_t radius, uint8_t value,
                     uint8_t *work);
 

@@ -11,7 +11,7 @@
 
 enum { BINS = 256 }; /* of the histogram under the Otsu threshold */
 
-static const double SMALLEST_PART = 0.1; /* of the jet, relative to its largest */
+static const double SMALLEST_PART = 0.1;  /* of the jet, relative to its largest */
 static const double CLEANING = 1.0 / 128; /* radius relative to the shorter side */
 static const double DISTANCE = 0.05;      /* of the background from the jet, likewise */
 
@@ -37,7 +37,8 @@ static double border_median(const float *map, int32_t width, int32_t height, flo
     const size_t w = (size_t)width, h = (size_t)height;
     size_t count = 0;
     for (size_t x = 0; x < w; x++) border[count++] = map[x], border[count++] = map[(h - 1) * w + x];
-    for (size_t y = 0; y < h; y++) border[count++] = map[y * w], border[count++] = map[y * w + w - 1];
+    for (size_t y = 0; y < h; y++)
+        border[count++] = map[y * w], border[count++] = map[y * w + w - 1];
     qsort(border, count, sizeof *border, ascending);
     return ((double)border[count / 2 - 1] + (double)border[count / 2]) / 2;
 }
@@ -47,8 +48,8 @@ static int32_t bin_of(double magnitude, double largest) {
     return bin < BINS ? bin : BINS - 1;
 }
 
-/* First bin above the threshold that separates the histogram into two classes with the greatest variance
-   between them (Otsu 1979). */
+/* First bin above the threshold that separates the histogram into two classes with the greatest
+   variance between them (Otsu 1979). */
 static int32_t otsu(const double histogram[BINS]) {
     double total = 0, moment = 0, below = 0, moment_below = 0, best = -1;
     int32_t threshold = 1;
@@ -58,7 +59,8 @@ static int32_t otsu(const double histogram[BINS]) {
         const double above = total - below;
         if (below == 0 || above == 0) continue;
         const double step = moment_below / below - (moment - moment_below) / above;
-        if (below * above * step * step > best) best = below * above * step * step, threshold = i + 1;
+        if (below * above * step * step > best)
+            best = below * above * step * step, threshold = i + 1;
     }
     return threshold;
 }
@@ -68,7 +70,8 @@ static ptie_status threshold_map(uint8_t *mask, const float *map, size_t pixels,
     double histogram[BINS] = {0}, largest = 0;
     for (size_t i = 0; i < pixels; i++) largest = fmax(largest, fabs((double)map[i] - level));
     if (largest == 0)
-        return PTIE_FAIL(PTIE_ENUMERIC, "map: is constant (expected a flow, found %g everywhere)", level);
+        return PTIE_FAIL(PTIE_ENUMERIC, "map: is constant (expected a flow, found %g everywhere)",
+                         level);
     for (size_t i = 0; i < pixels; i++) histogram[bin_of(fabs((double)map[i] - level), largest)]++;
     const int32_t threshold = otsu(histogram);
     for (size_t i = 0; i < pixels; i++)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Structural similarity (Wang et al. 2004) with the 11 x 11 Gaussian window, sigma 1.5, over windows that lie
-   inside the image.  docs/math.md (Q3). */
+/* Structural similarity (Wang et al. 2004) with the 11 x 11 Gaussian window, sigma 1.5, over
+   windows that lie inside the image.  docs/math.md (Q3). */
 #include <math.h>
 
 #include "base/memory.h"

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Angular spectrum: scalar diffraction without approximation.  docs/math.md (M7).
  *
- * The transfer function H = C + i S depends on k^2 only, so C and S are real convolutions that keep the
- * boundary's symmetry: the parts a and b of the wave a + i b go through real transforms (FFT or DCT), and
+ * The transfer function H = C + i S depends on k^2 only, so C and S are real convolutions that keep
+ * the boundary's symmetry: the parts a and b of the wave a + i b go through real transforms (FFT or
+ * DCT), and
+ *
  *     a' = C a - S b,   b' = S a + C b   at +dz,   with S -> -S at -dz.
  */
 #include <math.h>
@@ -11,7 +13,7 @@
 
 #define TWO_PI 6.283185307179586476925
 
-/* Phase of H without that of a plane wave: dz (k_z - k0) = -dz k^2 / (k0 + k_z), without cancellation. */
+/* Phase of H relative to a plane wave: dz (k_z - k0) = -dz k^2 / (k0 + k_z), no cancellation. */
 static bool transfer_phase(double k2, const ptie_optics_params *p, double *phase) {
     const double k0 = TWO_PI / p->wavelength_m;
     if (k2 > k0 * k0) return false; /* evanescent */

@@ -19,8 +19,8 @@ void ptie_linear_signal_spectral(const ptie_optics *optics, const float *phase_r
     ptie_fft_inverse(optics->fft, work->image, work->spectrum);
 }
 
-/* Index of the neighbour beyond either end.  The mirror of DCT-II lies half a pixel outside: the pixel
-   beyond the edge equals the edge. */
+/* Index of the neighbour beyond either end.  The mirror of DCT-II lies half a pixel outside: the
+   pixel beyond the edge equals the edge. */
 static int32_t neighbour(int32_t i, int32_t n, ptie_boundary boundary) {
     if (boundary == PTIE_PERIODIC) return (i + n) % n;
     return i < 0 ? 0 : i >= n ? n - 1 : i;
@@ -32,7 +32,8 @@ static void stencil_row(float *signal, const float *above, const float *row, con
     for (int32_t x = 0; x < width; x++) {
         const int32_t left = neighbour(x - 1, width, boundary);
         const int32_t right = neighbour(x + 1, width, boundary);
-        const double sum = (double)above[x] + (double)below[x] + (double)row[left] + (double)row[right];
+        const double sum =
+            (double)above[x] + (double)below[x] + (double)row[left] + (double)row[right];
         signal[x] = (float)(scale * (sum - 4 * (double)row[x]));
     }
 }

@@ -89,15 +89,17 @@ static ptie_status constant_intensity(float *value, const float *i_zero,
     *value = i_zero ? i_zero[0] : 1;
     for (size_t i = 0; i_zero && i < pixels; i++)
         if (i_zero[i] != *value)
-            return PTIE_FAIL(PTIE_EINVAL,
-                             "i_zero: linear TIE needs a constant intensity (at x=%zu, y=%zu; expected "
-                             "%g, found %g); use the angular spectrum",
-                             i % w, i / w, (double)*value, (double)i_zero[i]);
+            return PTIE_FAIL(
+                PTIE_EINVAL,
+                "i_zero: linear TIE needs a constant intensity (at x=%zu, y=%zu; expected "
+                "%g, found %g); use the angular spectrum",
+                i % w, i / w, (double)*value, (double)i_zero[i]);
     return PTIE_OK;
 }
 
-/* I+- = I0 (1 +- signal).  The darker plane is counted from the rounded brighter one: their difference,
-   which carries the phase, is then rounded once and at the finer step (docs/math.md M9). */
+/* I+- = I0 (1 +- signal).  The darker plane is counted from the rounded brighter one: their
+   difference, which carries the phase, is then rounded once and at the finer step (docs/math.md
+   M9). */
 static void set_planes(float *i_plus, float *i_minus, const float *signal, double intensity,
                        size_t count) {
     for (size_t i = 0; i < count; i++) {
@@ -128,9 +130,10 @@ static ptie_status check_intensity(const float *i_zero, const ptie_optics_params
     const size_t w = (size_t)p->width_px, pixels = w * (size_t)p->height_px;
     for (size_t i = 0; i < pixels; i++)
         if (i_zero[i] < 0)
-            return PTIE_FAIL(PTIE_ENUMERIC,
-                             "i_zero: intensity is negative (at x=%zu, y=%zu; expected >= 0, found %g)",
-                             i % w, i / w, (double)i_zero[i]);
+            return PTIE_FAIL(
+                PTIE_ENUMERIC,
+                "i_zero: intensity is negative (at x=%zu, y=%zu; expected >= 0, found %g)", i % w,
+                i / w, (double)i_zero[i]);
     return PTIE_OK;
 }
 

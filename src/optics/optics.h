@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The forward model inside the library; contracts as in <ptie/optics.h>, arguments already checked. */
+/* The forward model inside the library: contracts of <ptie/optics.h>, arguments already checked. */
 #ifndef PTIE_OPTICS_OPTICS_H
 #define PTIE_OPTICS_OPTICS_H
 

@@ -8,9 +8,9 @@
 
 struct ptie_optics {
     ptie_optics_params params;
-    ptie_fft *fft;       /* of the boundary; NULL for the stencil */
-    float *signal;       /* PTIE_TIE_SPECTRAL: spectrum of dz dI/dz per spectrum of phase */
-    float *h_re, *h_im;  /* PTIE_ANGULAR_SPECTRUM: transfer function to +defocus */
+    ptie_fft *fft;      /* of the boundary; NULL for the stencil */
+    float *signal;      /* PTIE_TIE_SPECTRAL: spectrum of dz dI/dz per spectrum of phase */
+    float *h_re, *h_im; /* PTIE_ANGULAR_SPECTRUM: transfer function to +defocus */
 };
 
 /* Parts of a run's scratch; NULL where a propagation has no use for one. */

@@ -10,10 +10,11 @@
 
 static ptie_status weigh_pair(ptie_tie_weights *weights, double plus_m, double minus_m) {
     if (plus_m - minus_m < LEAST_STEP_M)
-        return PTIE_FAIL(PTIE_EINVAL,
-                         "solver: distances do not fit a pair of planes (expected defocus_minus_m < "
-                         "defocus_plus_m, found %g and %g)",
-                         minus_m, plus_m);
+        return PTIE_FAIL(
+            PTIE_EINVAL,
+            "solver: distances do not fit a pair of planes (expected defocus_minus_m < "
+            "defocus_plus_m, found %g and %g)",
+            minus_m, plus_m);
     weights->plus = 1 / (plus_m - minus_m);
     weights->minus = -weights->plus;
     return PTIE_OK;
@@ -22,10 +23,11 @@ static ptie_status weigh_pair(ptie_tie_weights *weights, double plus_m, double m
 /* Derivative at z = 0 of the parabola through the three planes (M4b). */
 static ptie_status weigh_triple(ptie_tie_weights *weights, double plus_m, double minus_m) {
     if (plus_m < LEAST_STEP_M || minus_m > -LEAST_STEP_M)
-        return PTIE_FAIL(PTIE_EINVAL,
-                         "solver: distances do not fit three planes (expected defocus_minus_m < 0 < "
-                         "defocus_plus_m, found %g and %g)",
-                         minus_m, plus_m);
+        return PTIE_FAIL(
+            PTIE_EINVAL,
+            "solver: distances do not fit three planes (expected defocus_minus_m < 0 < "
+            "defocus_plus_m, found %g and %g)",
+            minus_m, plus_m);
     const double up = plus_m, down = -minus_m;
     weights->plus = down / (up * (up + down));
     weights->minus = -up / (down * (up + down));
@@ -93,8 +95,8 @@ static ptie_status check_divisor(const float *i_zero, size_t width, size_t heigh
     return PTIE_OK;
 }
 
-/* With I0 measured, every pixel is divided by its own.  i_minus NULL: its weight is 0.  The weights sum
-   to 0, so differences from I0 are weighed: what is common to the planes cancels exactly. */
+/* With I0 measured, every pixel is divided by its own.  i_minus NULL: its weight is 0.  The weights
+   sum to 0, so differences from I0 are weighed: what is common to the planes cancels exactly. */
 static void pixelwise_derivative(float *derivative, const ptie_tie_weights *weights,
                                  const float *i_plus, const float *i_zero, const float *i_minus,
                                  size_t count) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* dI/dz relative to the intensity, from the planes that there are.  docs/math.md (M4), (M4b), (M4c). */
+/* dI/dz relative to the intensity, from the planes that there are.  docs/math.md (M4), (M4b),
+ * (M4c). */
 #ifndef PTIE_TIE_DERIVATIVE_H
 #define PTIE_TIE_DERIVATIVE_H
 

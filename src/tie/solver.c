@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Inverse plans: phi = (2 pi / lambda) F^-1( k^2 / (k^4 + k_c^4) F(dI/dz / I) ).  docs/math.md (M5), (M6). */
+/* Inverse plans: phi = (2 pi / lambda) F^-1( k^2 / (k^4 + k_c^4) F(dI/dz / I) ).  docs/math.md
+ * (M5), (M6). */
 #include "tie/solver.h"
 
 #include <assert.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The inverse model inside the library; contracts as in <ptie/solver.h>, arguments already checked. */
+/* The inverse model inside the library: contracts of <ptie/solver.h>, arguments already checked. */
 #ifndef PTIE_TIE_SOLVER_H
 #define PTIE_TIE_SOLVER_H
 

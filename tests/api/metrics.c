@@ -13,11 +13,13 @@ static void compare_checks_its_arguments(void **state) {
     ptie_comparison c;
     assert_ok(ptie_compare(&c, image, image, 4, 4, 1));
     assert_ok(ptie_compare(&c, image, image, 1, 1, 1));
-    assert_fails(ptie_compare(NULL, image, image, 4, 4, 1), PTIE_EINVAL, "ptie_compare: out is missing");
+    assert_fails(ptie_compare(NULL, image, image, 4, 4, 1), PTIE_EINVAL,
+                 "ptie_compare: out is missing");
     assert_fails(ptie_compare(&c, NULL, image, 4, 4, 1), PTIE_EINVAL, "estimate is missing");
     assert_fails(ptie_compare(&c, image, NULL, 4, 4, 1), PTIE_EINVAL, "truth is missing");
     assert_fails(ptie_compare(&c, image, image, 0, 4, 1), PTIE_EINVAL, "width_px is out of range");
-    assert_fails(ptie_compare(&c, image, image, 4, 32769, 1), PTIE_EINVAL, "height_px is out of range");
+    assert_fails(ptie_compare(&c, image, image, 4, 32769, 1), PTIE_EINVAL,
+                 "height_px is out of range");
     assert_fails(ptie_compare(&c, image, image, 4, 4, 0), PTIE_EINVAL,
                  "range is out of range (expected a number > 0, found 0)");
     assert_fails(ptie_compare(&c, image, image, 4, 4, (double)NAN), PTIE_EINVAL, "found nan");
@@ -27,9 +29,10 @@ static void rectangles_must_lie_inside(void **state) {
     (void)state;
     uint8_t labels[16];
     const ptie_rect all = {0, 0, 4, 4};
-    static const ptie_rect bad[] = {{-1, 0, 2, 2}, {0, -1, 2, 2}, {0, 0, 0, 2},         {0, 0, 2, 0},
-                                    {3, 0, 2, 2},  {0, 3, 2, 2},  {0, 0, 5, 1},         {0, 0, -2, 2},
-                                    {4, 0, 1, 1},  {0, 4, 1, 1},  {1, 0, INT32_MAX, 1}, {INT32_MAX, 0, 1, 1}};
+    static const ptie_rect bad[] = {{-1, 0, 2, 2}, {0, -1, 2, 2},        {0, 0, 0, 2},
+                                    {0, 0, 2, 0},  {3, 0, 2, 2},         {0, 3, 2, 2},
+                                    {0, 0, 5, 1},  {0, 0, -2, 2},        {4, 0, 1, 1},
+                                    {0, 4, 1, 1},  {1, 0, INT32_MAX, 1}, {INT32_MAX, 0, 1, 1}};
     assert_ok(ptie_regions_from_rects(labels, 4, 4, all, all));
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         assert_fails(ptie_regions_from_rects(labels, 4, 4, bad[i], all), PTIE_EINVAL,
@@ -47,7 +50,8 @@ static void propose_checks_its_arguments(void **state) {
     uint8_t labels[16];
     assert_fails(ptie_regions_propose(NULL, image, 4, 4), PTIE_EINVAL, "labels is missing");
     assert_fails(ptie_regions_propose(labels, NULL, 4, 4), PTIE_EINVAL, "map is missing");
-    assert_fails(ptie_regions_propose(labels, image, 0, 4), PTIE_EINVAL, "width_px is out of range");
+    assert_fails(ptie_regions_propose(labels, image, 0, 4), PTIE_EINVAL,
+                 "width_px is out of range");
     assert_fails(ptie_regions_propose(labels, image, 1, 1), PTIE_ENUMERIC, "map: is constant");
 }
 
@@ -60,7 +64,8 @@ static void flow_measure_checks_its_arguments(void **state) {
     assert_fails(ptie_flow_measure(NULL, image, labels, 4, 4), PTIE_EINVAL, "out is missing");
     assert_fails(ptie_flow_measure(&m, NULL, labels, 4, 4), PTIE_EINVAL, "map is missing");
     assert_fails(ptie_flow_measure(&m, image, NULL, 4, 4), PTIE_EINVAL, "labels is missing");
-    assert_fails(ptie_flow_measure(&m, image, labels, 4, 0), PTIE_EINVAL, "height_px is out of range");
+    assert_fails(ptie_flow_measure(&m, image, labels, 4, 0), PTIE_EINVAL,
+                 "height_px is out of range");
 }
 
 int main(void) {

@@ -53,9 +53,10 @@ static void a_newer_caller_may_not_ask_for_what_is_unknown(void **state) {
     assert_true(own.struct_size == sizeof(now) && own.a == 7 && own.c == 9);
     given.d = 1;
     own = defaults();
-    assert_fails(ptie_params_read(&own, sizeof own, &given, "f"), PTIE_EINVAL,
-                 "f: params of a newer version set a field that this version does not have (expected "
-                 "struct_size 24, found 32)");
+    assert_fails(
+        ptie_params_read(&own, sizeof own, &given, "f"), PTIE_EINVAL,
+        "f: params of a newer version set a field that this version does not have (expected "
+        "struct_size 24, found 32)");
     assert_int_equal(own.a, 1);
 }
 
@@ -65,8 +66,9 @@ static void params_must_be_initialised(void **state) {
     static const uint32_t sizes[] = {0, 3, 0xcdcdcdcd};
     for (int i = 0; i < 3; i++) {
         given.struct_size = sizes[i];
-        assert_fails(ptie_params_read(&own, sizeof own, &given, "f"), PTIE_EINVAL,
-                     "f: params are not initialised (expected struct_size 24 as *_params_init sets it");
+        assert_fails(
+            ptie_params_read(&own, sizeof own, &given, "f"), PTIE_EINVAL,
+            "f: params are not initialised (expected struct_size 24 as *_params_init sets it");
     }
     assert_fails(ptie_params_read(&own, sizeof own, NULL, "f"), PTIE_EINVAL,
                  "f: params is missing (expected a pointer, found NULL)");

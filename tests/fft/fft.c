@@ -66,7 +66,8 @@ static double complex element(ptie_fft_kind kind, const float *image, int32_t i)
 }
 
 /* The whole transform by its definition, rows then columns.  out: height x width. */
-static void direct(double complex *out, ptie_fft_kind kind, const float *image, int32_t w, int32_t h) {
+static void direct(double complex *out, ptie_fft_kind kind, const float *image, int32_t w,
+                   int32_t h) {
     double complex *rows = calloc((size_t)w * (size_t)h, sizeof *rows);
     assert_non_null(rows);
     for (int32_t y = 0; y < h; y++)
@@ -90,7 +91,8 @@ static void check_against_direct(ptie_fft_kind kind, int32_t w, int32_t h) {
     direct(expected, kind, s.image, w, h);
     ptie_fft_forward(s.fft, s.spectrum, s.image);
     const int32_t columns = ptie_fft_columns(s.fft);
-    const ptie_fft_kind spectrum_kind = kind == PTIE_FFT_MIRROR ? PTIE_FFT_MIRROR : PTIE_FFT_COMPLEX;
+    const ptie_fft_kind spectrum_kind =
+        kind == PTIE_FFT_MIRROR ? PTIE_FFT_MIRROR : PTIE_FFT_COMPLEX;
     double off = 0, norm = 0;
     for (int32_t y = 0; y < h; y++)
         for (int32_t x = 0; x < columns; x++) {
@@ -181,8 +183,8 @@ static void a_shift_is_a_phase_ramp(void **state) {
     for (int32_t y = 0; y < H; y++)
         for (int32_t x = 0; x < ptie_fft_columns(s.fft); x++) {
             const int32_t i = y * ptie_fft_columns(s.fft) + x;
-            const double angle = ptie_fft_wavenumber(s.fft, 0, x, 1) * DX +
-                                 ptie_fft_wavenumber(s.fft, 1, y, 1) * DY;
+            const double angle =
+                ptie_fft_wavenumber(s.fft, 0, x, 1) * DX + ptie_fft_wavenumber(s.fft, 1, y, 1) * DY;
             const double complex expected =
                 element(PTIE_FFT_COMPLEX, s.spectrum, i) * cexp(CMPLX(0, -angle));
             const double complex found = element(PTIE_FFT_COMPLEX, moved.spectrum, i);
@@ -198,8 +200,8 @@ static double energy(const float *values, size_t count) {
     return sum;
 }
 
-/* Energy of a whole spectrum.  REAL: inner columns stand for two.  MIRROR: cosine modes have half the
-   energy of the mean along each axis, and FFTW's factor 2 counts twice. */
+/* Energy of a whole spectrum.  REAL: inner columns stand for two.  MIRROR: cosine modes have half
+   the energy of the mean along each axis, and FFTW's factor 2 counts twice. */
 static double spectrum_energy(const setup *s, ptie_fft_kind kind, int32_t w, int32_t h) {
     const int32_t columns = ptie_fft_columns(s->fft);
     const size_t entry = kind == PTIE_FFT_MIRROR ? 1 : 2;
@@ -247,8 +249,8 @@ static double low_pass(double k2, const void *context) {
     return exp(-k2 * *(const double *)context);
 }
 
-/* White noise through a filter keeps ptie_fft_filter_power of its variance.  The half spectrum must count
-   as the whole one does. */
+/* White noise through a filter keeps ptie_fft_filter_power of its variance.  The half spectrum must
+   count as the whole one does. */
 static void filter_power_counts_every_mode_once(void **state) {
     (void)state;
     const double width = 0.05;
@@ -263,7 +265,8 @@ static void filter_power_counts_every_mode_once(void **state) {
             drop(&s);
         }
         assert_near(power[0] / power[2], 1, 1e-6); /* f32 filter values */
-        assert_true(power[1] > power[2] || sizes[i][0] * sizes[i][1] == 1); /* half-steps: more low modes */
+        assert_true(power[1] > power[2] ||
+                    sizes[i][0] * sizes[i][1] == 1); /* half-steps: more low modes */
     }
 }
 
@@ -275,7 +278,8 @@ static void a_filter_scales_each_mode(void **state) {
         setup s = make(kinds[k], W, H);
         float *filter = ptie_alloc(ptie_fft_filter_floats(s.fft), sizeof *filter);
         ptie_fft_filter_fill(s.fft, filter, 1, low_pass, &width);
-        const double kx = ptie_fft_wavenumber(s.fft, 0, 3, 1), ky = ptie_fft_wavenumber(s.fft, 1, 2, 1);
+        const double kx = ptie_fft_wavenumber(s.fft, 0, 3, 1),
+                     ky = ptie_fft_wavenumber(s.fft, 1, 2, 1);
         for (int y = 0; y < H; y++)
             for (int x = 0; x < W; x++) /* half-sample offset: a mode of both kinds */
                 s.image[y * W + x] = (float)(cos(kx * (x + 0.5)) * cos(ky * (y + 0.5)));
@@ -285,7 +289,8 @@ static void a_filter_scales_each_mode(void **state) {
         ptie_fft_inverse(s.fft, s.image, s.spectrum);
         const float factor = (float)low_pass(kx * kx + ky * ky, &width);
         for (size_t i = 0; i < s.image_floats; i++) mode[i] *= factor;
-        assert_near(support_relative_error(s.image, mode, s.image_floats), 0, 1e-6); /* two transforms */
+        assert_near(support_relative_error(s.image, mode, s.image_floats), 0,
+                    1e-6); /* two transforms */
         free(mode);
         ptie_free(filter);
         drop(&s);

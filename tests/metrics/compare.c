@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Estimate against truth: values by hand, and NumPy's and SciPy's (tests/golden/make_metrics.py). */
+/* Estimate against truth: by hand, and by NumPy and SciPy (tests/golden/make_metrics.py). */
 #include "support/support.h"
 
 #include <math.h>
@@ -26,7 +26,8 @@ static void set_regions(uint8_t *labels, int32_t w, int32_t h) {
 
 static void check_row(const double v[12]) {
     const int32_t w = (int32_t)v[0], h = (int32_t)v[1];
-    float *estimate = calloc((size_t)(w * h), sizeof(float)), *truth = calloc((size_t)(w * h), sizeof(float));
+    float *estimate = calloc((size_t)(w * h), sizeof(float)),
+          *truth = calloc((size_t)(w * h), sizeof(float));
     uint8_t *labels = calloc((size_t)(w * h), 1);
     set_images(estimate, truth, w, h);
     set_regions(labels, w, h);
@@ -35,7 +36,8 @@ static void check_row(const double v[12]) {
     assert_ok(ptie_compare(&c, estimate, truth, w, h, v[2]));
     assert_ok(ptie_flow_measure(&m, estimate, labels, w, h));
     /* Sums of up to 3072 doubles near 1, in another order; measured 4e-15. */
-    const double found[] = {c.psnr_db, c.mae, c.rmse, c.ssim, c.correlation, m.mgm, m.sbr, m.bns, m.cnr};
+    const double found[] = {c.psnr_db, c.mae, c.rmse, c.ssim, c.correlation,
+                            m.mgm,     m.sbr, m.bns,  m.cnr};
     for (int i = 0; i < 9; i++) assert_near(found[i], v[3 + i], 1e-13 * fmax(1, fabs(v[3 + i])));
     free(estimate), free(truth), free(labels);
 }

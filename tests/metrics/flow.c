@@ -22,7 +22,8 @@ static void a_plane_has_its_slope(void **state) {
     assert_near(m.mean_background, 3 * 9.5 + 4 * 3.5 + 1, 1e-12);
     assert_near(m.sbr, m.mean_jet / m.mean_background, 1e-15);
     /* Variance of 0..n-1 is (n^2 - 1) / 12. */
-    const double var_jet = 9 * 35 / 12.0 + 16 * 63 / 12.0, var_background = 9 * 15 / 12.0 + 16 * 63 / 12.0;
+    const double var_jet = 9 * 35 / 12.0 + 16 * 63 / 12.0,
+                 var_background = 9 * 15 / 12.0 + 16 * 63 / 12.0;
     assert_near(m.bns, sqrt(var_background), 1e-12);
     assert_near(m.cnr, 21 / sqrt(var_jet + var_background), 1e-12);
 }

@@ -15,12 +15,14 @@ enum { N = 200, PIXELS = N * N };
 static void rectangles_become_labels_and_the_jet_wins(void **state) {
     (void)state;
     uint8_t labels[20];
-    assert_ok(ptie_regions_from_rects(labels, 5, 4, (ptie_rect){1, 1, 2, 2}, (ptie_rect){2, 0, 3, 4}));
-    static const uint8_t expected[20] = {0, 0, 2, 2, 2, 0, 1, 1, 2, 2, 0, 1, 1, 2, 2, 0, 0, 2, 2, 2};
+    assert_ok(
+        ptie_regions_from_rects(labels, 5, 4, (ptie_rect){1, 1, 2, 2}, (ptie_rect){2, 0, 3, 4}));
+    static const uint8_t expected[20] = {0, 0, 2, 2, 2, 0, 1, 1, 2, 2,
+                                         0, 1, 1, 2, 2, 0, 0, 2, 2, 2};
     assert_memory_equal(labels, expected, sizeof labels);
 }
 
-/* A plume that leaves the frame at its right edge: inside where |y - 100| < 20 + x / 10 and x > 30. */
+/* A plume that leaves the frame at its right edge: |y - 100| < 20 + x / 10 and x > 30. */
 static bool in_plume(int x, int y) {
     return x > 30 && abs(y - 100) < 20 + x / 10;
 }
@@ -126,7 +128,8 @@ static void growing_meets_its_definition(void **state) {
                     bool near = false;
                     for (int v = 0; v < H; v++)
                         for (int u = 0; u < W; u++)
-                            near |= abs(u - x) <= radius && abs(v - y) <= radius && mask[v * W + u] == value;
+                            near |= abs(u - x) <= radius && abs(v - y) <= radius &&
+                                    mask[v * W + u] == value;
                     assert_int_equal(grown[y * W + x], near ? value : !value);
                 }
         }

@@ -47,14 +47,15 @@ static void defocus(setup *s, const float *i_zero) {
     assert_ok(ptie_optics_defocus(s->optics, s->plus, s->minus, s->phase, i_zero, s->scratch));
 }
 
-/* a cos cos, an eigenfunction of both Laplacians under both boundaries; returns k^2 in (rad/m)^2 and the
-   5-point Laplacian's symbol for it. */
+/* a cos cos, an eigenfunction of both Laplacians under both boundaries; returns k^2 in (rad/m)^2
+   and the 5-point Laplacian's symbol for it. */
 static double set_mode(setup *s, int i, int j, double amplitude, double *stencil_k2) {
     const double p = s->params.pixel_m, half = s->params.boundary == PTIE_MIRROR ? 1 : 2;
     const double kx = half * PI * i / (s->w * p), ky = half * PI * j / (s->h * p);
     for (int32_t y = 0; y < s->h; y++)
         for (int32_t x = 0; x < s->w; x++)
-            s->phase[y * s->w + x] = (float)(amplitude * cos(kx * p * (x + 0.5)) * cos(ky * p * (y + 0.5)));
+            s->phase[y * s->w + x] =
+                (float)(amplitude * cos(kx * p * (x + 0.5)) * cos(ky * p * (y + 0.5)));
     *stencil_k2 = (4 - 2 * cos(kx * p) - 2 * cos(ky * p)) / (p * p);
     return kx * kx + ky * ky;
 }
@@ -70,8 +71,8 @@ static double response(const setup *s) {
     return product / norm;
 }
 
-/* What f32 transforms (relative error 6e-8) leave in a linear TIE signal: the highest modes have the gain
-   (lambda dz / 2 pi) k^2, which is 42 at pixels of 20 um. */
+/* What f32 transforms (relative error 6e-8) leave in a linear TIE signal: the highest modes have
+   the gain (lambda dz / 2 pi) k^2, which is 42 at pixels of 20 um. */
 static double rounding(double amplitude_rad) {
     return 6e-8 * amplitude_rad * (532e-9 * 10e-3 / (2 * PI) * 2 * pow(PI / 20e-6, 2));
 }
@@ -80,14 +81,15 @@ static void linear_tie_scales_eigenfunctions_by_k2(void **state) {
     (void)state;
     for (int boundary = 0; boundary < 2; boundary++)
         for (int stencil = 0; stencil < 2; stencil++) {
-            setup s = make(stencil ? PTIE_TIE_STENCIL : PTIE_TIE_SPECTRAL, (ptie_boundary)boundary, 40,
-                           27, 20e-6);
+            setup s = make(stencil ? PTIE_TIE_STENCIL : PTIE_TIE_SPECTRAL, (ptie_boundary)boundary,
+                           40, 27, 20e-6);
             double stencil_k2, k2 = set_mode(&s, 5, 3, 1.5, &stencil_k2);
             defocus(&s, NULL);
             const double expected = 532e-9 * 10e-3 / (2 * PI) * (stencil ? stencil_k2 : k2);
             for (int32_t i = 0; i < s.w * s.h; i++) {
                 const double signal = expected * (double)s.phase[i];
-                assert_near((double)s.plus[i], 1 + signal, rounding(1.5)); /* 3.8e-6; measured 1.5e-6 */
+                assert_near((double)s.plus[i], 1 + signal,
+                            rounding(1.5)); /* 3.8e-6; measured 1.5e-6 */
                 assert_near((double)s.minus[i], 1 - signal, rounding(1.5));
             }
             drop(&s);
@@ -113,7 +115,7 @@ static void a_converging_lens_brightens_at_plus(void **state) {
             set_gaussian(&s, +1, 200e-6);
             defocus(&s, NULL);
             const int32_t centre = 31 * 63 + 31;
-            /* dI/dz at the top: (lambda / 2 pi) 2 a / sigma^2; diffraction takes less than a fifth. */
+            /* dI/dz at the top: (lambda / 2 pi) 2 a / sigma^2; diffraction takes below a fifth. */
             const double signal = 532e-9 * 10e-3 / (2 * PI) * 2 / (200e-6 * 200e-6);
             assert_near((double)s.plus[centre] - 1, signal, signal / 5);
             assert_near((double)s.minus[centre] - 1, -signal, signal / 5);
@@ -130,17 +132,19 @@ static void a_gaussian_phase_has_its_laplacian(void **state) {
         defocus(&s, NULL);
         for (int32_t y = 0; y < s.h; y++)
             for (int32_t x = 0; x < s.w; x++) {
-                const double u = (x - 47.5) * p, v = (y - 47.5) * p, r2 = (u * u + v * v) / (sigma * sigma);
+                const double u = (x - 47.5) * p, v = (y - 47.5) * p,
+                             r2 = (u * u + v * v) / (sigma * sigma);
                 const double signal = c * a * (r2 - 2) / (sigma * sigma) * exp(-r2 / 2);
-                /* The tail at the frame (7.9 sigma) and above Nyquist is below 1e-12; measured 3.4e-6. */
+                /* The tail at the frame (7.9 sigma) and above Nyquist is below 1e-12;
+                   measured 3.4e-6. */
                 assert_near((double)s.plus[y * s.w + x] - 1, signal, rounding(a));
             }
         drop(&s);
     }
 }
 
-/* Relative difference of stencil and spectral signals of one field sampled at `refinement` times the
-   resolution. */
+/* Relative difference of stencil and spectral signals of one field sampled at `refinement` times
+   the resolution. */
 static double stencil_error(int refinement) {
     const int32_t n = 48 * refinement;
     setup spectral = make(PTIE_TIE_SPECTRAL, PTIE_MIRROR, n, n, 20e-6 / refinement);
@@ -161,7 +165,7 @@ static double stencil_error(int refinement) {
 static void the_stencil_converges_with_the_square_of_the_pixel(void **state) {
     (void)state;
     const double coarse = stencil_error(1), fine = stencil_error(2);
-    /* Error h^2 k^2 / 12 + O(h^4): the ratio is 4 up to the next order, (h / sigma)^2 / 10 = 0.4 %. */
+    /* Error h^2 k^2 / 12 + O(h^4): 4 up to the next order, (h / sigma)^2 / 10 = 0.4 %. */
     assert_near(coarse / fine, 4, 0.1);
     assert_true(coarse < 0.02);
 }
@@ -176,7 +180,8 @@ static void angular_spectrum_tends_to_linear_tie(void **state) {
             const double k2 = set_mode(&s, 2 * mode, mode, 4e-3, &unused);
             const double chi = k2 * 10e-3 * 532e-9 / (4 * PI);
             defocus(&s, NULL);
-            /* Third order in a; rounding near 1 against the signal 2 chi a = 0.008 chi: measured 2.8e-6 / chi. */
+            /* Third order in a; rounding near 1 against the signal 2 chi a = 0.008 chi:
+               measured 2.8e-6 / chi. */
             const double found = response(&s) / (2 * chi), slack = 1.6e-5 + 6e-6 / chi;
             assert_near(found, sin(chi) / chi, slack);
             assert_near(found, 1, chi * chi / 6 + slack);
@@ -300,7 +305,8 @@ static void intensity_in_focus_scales_the_planes(void **state) {
     (void)state;
     enum { N = 16 };
     float i_zero[N * N];
-    for (int32_t i = 0; i < N * N; i++) i_zero[i] = 4; /* a power of two: exact, also under the root */
+    for (int32_t i = 0; i < N * N; i++)
+        i_zero[i] = 4; /* a power of two: exact, also under the root */
     for (int propagation = 0; propagation < 3; propagation++) {
         setup one = make((ptie_propagation)propagation, PTIE_MIRROR, N, N, 20e-6);
         setup four = make((ptie_propagation)propagation, PTIE_MIRROR, N, N, 20e-6);
@@ -337,18 +343,20 @@ static void bad_images_are_named_with_their_pixel(void **state) {
     i_zero[2 * 8 + 5] = 1.5f;
     assert_fails(ptie_optics_defocus(linear.optics, linear.plus, linear.minus, linear.phase, i_zero,
                                      linear.scratch),
-                 PTIE_EINVAL, "i_zero: linear TIE needs a constant intensity (at x=5, y=2; expected 1");
+                 PTIE_EINVAL,
+                 "i_zero: linear TIE needs a constant intensity (at x=5, y=2; expected 1");
     i_zero[2 * 8 + 5] = -1;
-    assert_fails(ptie_optics_defocus(wave.optics, wave.plus, wave.minus, wave.phase, i_zero,
-                                     wave.scratch),
-                 PTIE_ENUMERIC, "i_zero: intensity is negative (at x=5, y=2");
+    assert_fails(
+        ptie_optics_defocus(wave.optics, wave.plus, wave.minus, wave.phase, i_zero, wave.scratch),
+        PTIE_ENUMERIC, "i_zero: intensity is negative (at x=5, y=2");
     i_zero[2 * 8 + 5] = INFINITY;
-    assert_fails(ptie_optics_defocus(wave.optics, wave.plus, wave.minus, wave.phase, i_zero,
-                                     wave.scratch),
-                 PTIE_ENUMERIC, "i_zero: value is not finite (at x=5, y=2");
+    assert_fails(
+        ptie_optics_defocus(wave.optics, wave.plus, wave.minus, wave.phase, i_zero, wave.scratch),
+        PTIE_ENUMERIC, "i_zero: value is not finite (at x=5, y=2");
     wave.phase[47] = NAN;
-    assert_fails(ptie_optics_defocus(wave.optics, wave.plus, wave.minus, wave.phase, NULL, wave.scratch),
-                 PTIE_ENUMERIC, "phase_rad: value is not finite (at x=7, y=5");
+    assert_fails(
+        ptie_optics_defocus(wave.optics, wave.plus, wave.minus, wave.phase, NULL, wave.scratch),
+        PTIE_ENUMERIC, "phase_rad: value is not finite (at x=7, y=5");
     assert_true(wave.plus[0] == 0); /* untouched */
     drop(&linear), drop(&wave);
 }
@@ -373,7 +381,8 @@ static void noise_is_gaussian_and_named(void **state) {
     assert_near(product / N, 0, 5 * 0.0625 / sqrt(N));
     float part[7] = {1, 1, 1, 1, 1, 1, 1};
     ptie_add_gaussian_noise(part, 7, 0.25, 11, PTIE_STREAM_NOISE_PLUS, 3);
-    for (int i = 0; i < 7; i++) assert_true(part[i] == 1 + a[i]); /* added; a prefix is the same draw */
+    for (int i = 0; i < 7; i++)
+        assert_true(part[i] == 1 + a[i]); /* added; a prefix is the same draw */
     free(a), free(b);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* White camera noise becomes a cloud of k^-4: closed form, the plan's own sum, and statistics agree. */
+/* White camera noise becomes a cloud of k^-4: closed form, plan's sum and statistics agree. */
 #include "tie/plan.h"
 
 #include "fft/fft.h"
@@ -28,16 +28,17 @@ static void the_plan_meets_the_closed_form(void **state) {
             ptie_solver *solver;
             assert_ok(ptie_tie_plan(&solver, &p));
             const double found = ptie_tie_noise_rad(solver, PTIE_PLANES_PAIR, SIGMA);
-            /* What lies beyond the grid is integral 2 pi k dk / k^4 = pi / (n / 2)^2 of 6.03 (periodic),
-               a quarter circle, pi / 4 / n^2 of 2.59 (mirror), at most; half of that on the root. */
+            /* What lies beyond the grid is integral 2 pi k dk / k^4 = pi / (n / 2)^2 of 6.03
+               (periodic), a quarter circle, pi / 4 / n^2 of 2.59 (mirror), at most; half of that on
+               the root. */
             assert_near(found / closed_form(&p), 1, boundary ? 0.16 / (n * n) : 1.05 / (n * n));
             ptie_solver_free(solver);
         }
 }
 
-/* Mean square over trials of the phase that noise alone makes.  Its relative standard error: the power
-   sits in few modes, sum w^2 / (sum w)^2 = 0.118 (periodic) or 0.31 (mirror) per trial and degree of
-   freedom, times 2. */
+/* Mean square over trials of the phase that noise alone makes.  Its relative standard error: the
+   power sits in few modes, sum w^2 / (sum w)^2 = 0.118 (periodic) or 0.31 (mirror) per trial and
+   degree of freedom, times 2. */
 static double trial_variance(const ptie_solver_params *p, ptie_planes planes, int trials) {
     const int32_t pixels = p->width_px * p->height_px;
     float *image[3] = {image_of(p->width_px, p->height_px), image_of(p->width_px, p->height_px),
@@ -84,7 +85,8 @@ static void noise_falls_with_the_fourth_power(void **state) {
     (void)state;
     enum { N = 64, TRIALS = 60 };
     const ptie_solver_params p = solver_params(PTIE_PERIODIC, N, N);
-    const double amplitude = 2 * PI / p.wavelength_m * SIGMA * p.pixel_m / (sqrt(2) * p.defocus_plus_m);
+    const double amplitude =
+        2 * PI / p.wavelength_m * SIGMA * p.pixel_m / (sqrt(2) * p.defocus_plus_m);
     double ring[N / 2] = {0};
     int count[N / 2] = {0};
     ptie_fft *fft;
@@ -111,7 +113,8 @@ static void noise_falls_with_the_fourth_power(void **state) {
                 count[radius]++;
             }
     }
-    for (int r = 1; r < N / 2; r++) /* exponentially distributed powers: error 1 / sqrt(count); 4.5 of 31 */
+    /* Exponentially distributed powers: error 1 / sqrt(count); 4.5 of it for 31 rings. */
+    for (int r = 1; r < N / 2; r++)
         assert_near(ring[r] / count[r] / (amplitude * amplitude), 1, 4.5 / sqrt(count[r]));
     ptie_free(phase), ptie_free(minus), ptie_free(spectrum);
     ptie_fft_free(fft);
@@ -126,7 +129,7 @@ static void regularisation_lowers_the_noise(void **state) {
     const double expected = ptie_tie_noise_rad(solver, PTIE_PLANES_PAIR, SIGMA);
     ptie_solver_free(solver);
     assert_true(expected < 0.2 * closed_form(&p));
-    /* Some 40 modes of similar weight share the power: relative error sqrt(2 / 40 / trials); 4 of them. */
+    /* Some 40 modes of similar weight share the power: four of sqrt(2 / 40 / 500). */
     assert_near(trial_variance(&p, PTIE_PLANES_PAIR, 500) / (expected * expected), 1, 0.04);
 }
 

@@ -57,9 +57,10 @@ static inline void forward(const ptie_solver_params *params, float *plus, float 
     ptie_optics_free(optics);
 }
 
-/* Zero-mean, band-limited to a quarter of Nyquist (beyond, a linear signal exceeds the light): twelve modes
-   of the boundary, about 1 rad in all. */
-static inline void set_band_limited(float *phase, const ptie_solver_params *params, uint64_t which) {
+/* Zero-mean, band-limited to a quarter of Nyquist (beyond, a linear signal exceeds the light):
+   twelve modes of the boundary, about 1 rad in all. */
+static inline void set_band_limited(float *phase, const ptie_solver_params *params,
+                                    uint64_t which) {
     const int32_t w = params->width_px, h = params->height_px;
     const int32_t step = params->boundary == PTIE_MIRROR ? 1 : 2; /* half-waves across the frame */
     ptie_random random;

@@ -21,10 +21,11 @@ static void solve_undoes_forward(void **state) {
         }
 }
 
-/* Rounding is noise of the images, and amplified as such: 3e-8 of the light, and of the signal what two
-   transforms leave, 4e-7 if it were white (tests/fft); regular images have it in their own few modes:
-   measured 8e-7, allowed 1.5e-6. */
-static double rounding_rad(const ptie_solver_params *params, const float *plus, const float *minus) {
+/* Rounding is noise of the images, and amplified as such: 3e-8 of the light, and of the signal what
+   two transforms leave, 4e-7 if it were white (tests/fft); regular images have it in their own few
+   modes: measured 8e-7, allowed 1.5e-6. */
+static double rounding_rad(const ptie_solver_params *params, const float *plus,
+                           const float *minus) {
     const int32_t count = params->width_px * params->height_px;
     double squares = 0;
     for (int32_t i = 0; i < count; i++) squares += pow((double)plus[i] - (double)minus[i], 2);
@@ -52,13 +53,15 @@ static void solve_undoes_forward_on_sharp_edges(void **state) {
         float *found = image_of(W, H);
         assert_ok(solve(&p, found, plus, NULL, minus));
         const double rms = sqrt(0.125 * 0.875); /* of the phase */
-        assert_near(support_relative_error(found, phase, W * H), 0, rounding_rad(&p, plus, minus) / rms);
+        assert_near(support_relative_error(found, phase, W * H), 0,
+                    rounding_rad(&p, plus, minus) / rms);
         free(phase), free(plus), free(minus), free(found);
     }
 }
 
 /* dI/dz of a known phase, by hand: I+- = 1 +- dz dI/dz. */
-static void planes_of(float *plus, float *minus, const double *derivative, int32_t count, double dz) {
+static void planes_of(float *plus, float *minus, const double *derivative, int32_t count,
+                      double dz) {
     for (int32_t i = 0; i < count; i++) {
         plus[i] = (float)(1 + dz * derivative[i]);
         minus[i] = (float)(1 - dz * derivative[i]);
@@ -75,7 +78,8 @@ static void eigenfunctions_come_back_positive(void **state) {
         double derivative[W * H];
         float expected[W * H], found[W * H], plus[W * H], minus[W * H];
         for (int32_t i = 0; i < W * H; i++) {
-            const double mode = cos(kx * p.pixel_m * (i % W + 0.5)) * cos(ky * p.pixel_m * (i / W + 0.5));
+            const double mode =
+                cos(kx * p.pixel_m * (i % W + 0.5)) * cos(ky * p.pixel_m * (i / W + 0.5));
             expected[i] = (float)mode;
             derivative[i] = p.wavelength_m / (2 * PI) * (kx * kx + ky * ky) * mode;
         }
@@ -96,7 +100,8 @@ static void a_gaussian_phase_comes_back(void **state) {
         const ptie_solver_params p = solver_params((ptie_boundary)boundary, N, N);
         double mean = 0;
         for (int32_t i = 0; i < N * N; i++) {
-            const double x = (i % N - (N - 1) / 2.0) * p.pixel_m, y = (i / N - (N - 1) / 2.0) * p.pixel_m;
+            const double x = (i % N - (N - 1) / 2.0) * p.pixel_m,
+                         y = (i / N - (N - 1) / 2.0) * p.pixel_m;
             const double r2 = (x * x + y * y) / (sigma * sigma), phase = 3 * exp(-r2 / 2);
             derivative[i] = -p.wavelength_m / (2 * PI) * phase * (r2 - 2) / (sigma * sigma);
             expected[i] = (float)phase;
@@ -117,7 +122,8 @@ static void unequal_steps_are_exact_on_parabolas(void **state) {
     ptie_solver_params p = solver_params(PTIE_MIRROR, W, H);
     p.defocus_plus_m = 15e-3, p.defocus_minus_m = -6e-3;
     ptie_solver_params even = solver_params(PTIE_MIRROR, W, H);
-    float phase[W * H], slope[W * H], curve[W * H], plus[W * H], zero[W * H], minus[W * H], found[W * H];
+    float phase[W * H], slope[W * H], curve[W * H], plus[W * H], zero[W * H], minus[W * H],
+        found[W * H];
     set_band_limited(phase, &p, 20);
     set_band_limited(curve, &p, 21);
     forward(&even, plus, minus, phase, PTIE_TIE_SPECTRAL);
@@ -181,7 +187,8 @@ static void regularisation_keeps_the_amplitude_of_fine_structure(void **state) {
             const double kept = pow(k, 4) / (pow(k, 4) + pow(2 * PI / 16, 4));
             for (int32_t i = 0; i < N * N; i++) phase[i] *= (float)kept;
             double squares = 0;
-            for (int32_t i = 0; i < N * N; i++) squares += pow((double)found[i] - (double)phase[i], 2);
+            for (int32_t i = 0; i < N * N; i++)
+                squares += pow((double)found[i] - (double)phase[i], 2);
             /* And that of the inverse transform, 3e-7 of 0.5 rad; measured 4.3e-8. */
             assert_near(sqrt(squares) / N, 0, rounding_rad(&p, plus, minus) + 1.5e-7);
             if (k > 2 * PI / 16 * 4) assert_true(kept > 0.996); /* 1 - (k_c / k)^4 */
@@ -242,8 +249,9 @@ static void bad_images_are_named_with_their_pixel(void **state) {
     assert_fails(solve(&p, phase, good, bad, good), PTIE_ENUMERIC,
                  "i_zero: value is not finite (at x=2, y=3");
     bad[3 * W + 2] = 0;
-    assert_fails(solve(&p, phase, good, bad, good), PTIE_ENUMERIC,
-                 "i_zero: intensity to divide by is not positive (at x=2, y=3; expected > 0, found 0");
+    assert_fails(
+        solve(&p, phase, good, bad, good), PTIE_ENUMERIC,
+        "i_zero: intensity to divide by is not positive (at x=2, y=3; expected > 0, found 0");
     for (int i = 0; i < W * H; i++) bad[i] = -1;
     assert_fails(solve(&p, phase, good, NULL, bad), PTIE_ENUMERIC,
                  "i_plus, i_minus: mean intensity is not positive (expected > 0, found 0)");

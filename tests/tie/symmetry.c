@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What must not change the phase, and what must change it in a known way.  Inputs are random images: the
-   symmetries hold for any. */
+/* What must not change the phase, and what must change it in a known way.  Inputs are random
+   images: the symmetries hold for any. */
 #include "tie/plan.h"
 
 enum { W = 36, H = 28, PIXELS = W * H };
@@ -79,7 +79,8 @@ static void a_constant_drops_out(void **state) {
         set_planes(plus, minus);
         assert_ok(solve(&p, phase, plus, NULL, minus));
         double mean = 0;
-        for (int i = 0; i < PIXELS; i++) mean += ((double)plus[i] + (double)minus[i]) / (2 * PIXELS);
+        for (int i = 0; i < PIXELS; i++)
+            mean += ((double)plus[i] + (double)minus[i]) / (2 * PIXELS);
         for (int i = 0; i < PIXELS; i++) plus[i] += 0.25f;
         assert_ok(solve(&p, shifted, plus, NULL, minus));
         for (int i = 0; i < PIXELS; i++) phase[i] *= (float)(mean / (mean + 0.125));
@@ -94,7 +95,8 @@ static void the_mean_is_zero(void **state) {
         float phase[PIXELS];
         solve_with(phase, (ptie_boundary)boundary, 1, 1, 1);
         double sum = 0, magnitude = 0;
-        for (int i = 0; i < PIXELS; i++) sum += (double)phase[i], magnitude += fabs((double)phase[i]);
+        for (int i = 0; i < PIXELS; i++)
+            sum += (double)phase[i], magnitude += fabs((double)phase[i]);
         assert_near(sum / magnitude, 0, 1e-7); /* rounding of the inverse transform */
     }
 }
