@@ -58,7 +58,7 @@ static double sum_row(const double *ring, int32_t top, size_t columns, const dou
 
 ptie_status ptie_metrics_ssim(double *out, const float *a, const float *b, int32_t width,
                               int32_t height, double range) {
-    *out = NAN;
+    *out = (double)NAN;
     if (width < TAPS || height < TAPS) return PTIE_OK;
     const size_t columns = (size_t)width - TAPS + 1, row_moments = MOMENTS * columns;
     double *ring, weights[TAPS], sum = 0;

@@ -103,7 +103,7 @@ ptie_status ptie_tie_solve(const ptie_solver *solver, float *phase_rad, const fl
 /* White noise of variance v per pixel of dI/dz leaves v times the filter's mean power (M8). */
 double ptie_tie_noise_rad(const ptie_solver *solver, ptie_planes planes, double sigma) {
     ptie_tie_weights w;
-    if (ptie_tie_weigh(&w, planes, &solver->params) != PTIE_OK) return NAN;
+    if (ptie_tie_weigh(&w, planes, &solver->params) != PTIE_OK) return (double)NAN;
     const double power = ptie_fft_filter_power(solver->fft, solver->filter);
     return sigma * sqrt((w.plus * w.plus + w.zero * w.zero + w.minus * w.minus) * power);
 }

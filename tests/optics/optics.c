@@ -12,6 +12,11 @@
 
 #define PI 3.14159265358979323846
 
+/* CMPLX of C11, which clang does not find in every C library. */
+static double complex complex_of(double re, double im) {
+    return re + im * (double complex)I;
+}
+
 /* A plan, its scratch, and images of its size. */
 typedef struct setup {
     ptie_optics_params params;
@@ -267,12 +272,12 @@ static void direct_intensity(double *intensity, const setup *s, const float *i_z
             for (int32_t i = 0; i < w * h; i++) {
                 const double turn = (double)u * (i % w) / w + (double)v * (i / w) / h;
                 const double angle = (double)s->phase[i] - 2 * PI * turn;
-                sum += sqrt((double)i_zero[i]) * cexp(CMPLX(0, angle));
+                sum += sqrt((double)i_zero[i]) * cexp(complex_of(0, angle));
             }
-            sum *= cexp(CMPLX(0, 2 * PI / lambda * z * sqrt(q))) / (w * h);
+            sum *= cexp(complex_of(0, 2 * PI / lambda * z * sqrt(q))) / (w * h);
             for (int32_t i = 0; i < w * h; i++) {
                 const double turn = (double)u * (i % w) / w + (double)v * (i / w) / h;
-                wave[i] += sum * cexp(CMPLX(0, 2 * PI * turn));
+                wave[i] += sum * cexp(complex_of(0, 2 * PI * turn));
             }
         }
     for (int32_t i = 0; i < w * h; i++) intensity[i] = pow(cabs(wave[i]), 2);
