@@ -12,7 +12,7 @@ typedef double (*ptie_radial)(double radius, const void *context);
 double ptie_abel(ptie_radial field, const void *context, double y, double reach);
 
 /* The projection at 0 .. reach, tabulated; zero beyond. */
-#define PTIE_PROJECTION_STEPS 512
+#define PTIE_PROJECTION_STEPS 256
 typedef struct ptie_projection {
     float value[PTIE_PROJECTION_STEPS + 2];
     float reach;

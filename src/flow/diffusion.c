@@ -34,6 +34,7 @@ static ptie_status draw_plume(float *map, const ptie_scene *scene, ptie_random *
     p.lag = ptie_draw_log(random, 0.02, 0.3) * axes.end;
     PTIE_TRY(ptie_stream_draw(&p.stream, scene, random, &ranges, (double)axes.end));
     p.height *= p.stream.radius;
+    p.stream.reach = 5 * sqrtf(1 + axes.end / p.lag);
     ptie_paint(map, scene, &axes, at, &p);
     ptie_stream_free(&p.stream);
     return PTIE_OK;

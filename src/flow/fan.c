@@ -37,17 +37,12 @@ static float cone_at(const void *flow, float x, float y) {
            ptie_smoothstep(r / (0.12f * c->source));
 }
 
-static ptie_turbulence_params streaks_draw(const ptie_scene *scene, ptie_random *random,
-                                           double period) {
-    double speed = ptie_speed_draw(scene, random),
-           size = ptie_random_log_uniform(random, 0.15, 0.6);
-    return (ptie_turbulence_params){.key = ptie_key_draw(random),
-                                    .period = period,
-                                    .outer = size,
-                                    .inner = size * 0.15,
-                                    .drift = speed * scene->time_s,
-                                    .turns = 0.05 * speed / size * scene->time_s,
-                                    .cells = ptie_turbulence_cells(scene, period)};
+static ptie_status streaks_create(ptie_turbulence *out, const ptie_scene *scene,
+                                  ptie_random *random) {
+    double size = ptie_random_log_uniform(random, 0.15, 0.6),
+           speed = ptie_speed_draw(scene, random);
+    ptie_turbulence_params params = ptie_turbulence_draw(scene, random, size, 0.15, speed);
+    return ptie_turbulence_create(out, &params);
 }
 
 static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *random) {
@@ -61,8 +56,7 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     bool twin = ptie_chance(random, 0.3);
     c.centre = twin ? c.opening * ptie_draw(random, 1, 1.6) : 0;
     c.twin = twin ? ptie_draw(random, 0.4, 1) : 0;
-    ptie_turbulence_params params = streaks_draw(scene, random, 2);
-    PTIE_TRY(ptie_turbulence_create(&c.turbulence, &params));
+    PTIE_TRY(streaks_create(&c.turbulence, scene, random));
     ptie_paint(map, scene, &axes, cone_at, &c);
     ptie_turbulence_free(&c.turbulence);
     return PTIE_OK;
@@ -124,8 +118,7 @@ static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *ra
     c.reach = ptie_draw(random, 0.5, 1.2) * axes.end;
     double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene) * depth;
     fill_rays(&c, 1.4, mach, turn, path * pressure * ptie_ambient_refractivity());
-    ptie_turbulence_params params = streaks_draw(scene, random, 2);
-    PTIE_TRY(ptie_turbulence_create(&c.turbulence, &params));
+    PTIE_TRY(streaks_create(&c.turbulence, scene, random));
     ptie_paint(map, scene, &axes, corner_at, &c);
     ptie_turbulence_free(&c.turbulence);
     return PTIE_OK;

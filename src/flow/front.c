@@ -24,8 +24,8 @@ typedef struct front {
 /* d: distance ahead of the front. */
 static float shape(const front *f, float d, float y) {
     float sharp = d / f->thickness;
-    if (f->kind == FRONT_SHEET) return fabsf(sharp) < 4 ? ptie_bell(sharp) : 0;
-    if (sharp > 5) return 0;
+    if (f->kind == FRONT_SHEET) return ptie_bell(sharp);
+    if (sharp > 5 || d < -10 * f->tail) return 0;
     float fading = expf(fminf(d, 0) / f->tail);
     if (f->kind == FRONT_STEP) return fading * ptie_rise(-sharp);
     float half =
@@ -66,18 +66,12 @@ static ptie_status draw(float *map, const ptie_scene *scene, ptie_random *random
     f.side = f.kind == FRONT_NOSE ? ptie_draw(random, 0.06, 0.25) : ptie_draw(random, 0.12, 0.7);
     f.side_softness = ptie_draw(random, 0.02, 0.1);
     double spacing = ptie_random_uniform(random, f.kind == FRONT_SHEET ? 0.12 : 0.4, 0.8);
-    double speed = ptie_speed_draw(scene, random), way = speed * scene->time_s;
+    double speed = ptie_speed_draw(scene, random);
     double size = ptie_random_log_uniform(random, 0.2, 1);
     f.wrinkles = (float)size * ptie_draw_log(random, 0.015, 0.12);
     uint64_t key = ptie_key_draw(random);
-    ptie_turbulence_params wrinkling = {.key = ptie_key_draw(random),
-                                        .period = 2.5,
-                                        .outer = size,
-                                        .inner = size * 0.15,
-                                        .drift = way,
-                                        .turns = 0.05 * way / size,
-                                        .cells = ptie_turbulence_cells(scene, 2.5)};
-    place_fronts(&f, &axes, spacing, way, key);
+    ptie_turbulence_params wrinkling = ptie_turbulence_draw(scene, random, size, 0.15, speed);
+    place_fronts(&f, &axes, spacing, speed * scene->time_s, key);
     for (int i = 0; i < f.count; i++) f.height[i] *= height;
     PTIE_TRY(ptie_turbulence_create(&f.turbulence, &wrinkling));
     ptie_paint(map, scene, &axes, at, &f);

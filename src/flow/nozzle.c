@@ -148,6 +148,7 @@ static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *ra
     double radius = (double)m.exhaust.radius;
     ptie_stream_ranges ranges = {radius, radius, 0.06, 0.13, 0.05, 0.35};
     PTIE_TRY(ptie_stream_draw(&m.stream, scene, random, &ranges, (double)axes.end));
+    m.stream.reach += 0.5f * (float)m.count * m.pitch / m.exhaust.radius;
     ptie_paint(map, scene, &axes, manifold_at, &m);
     ptie_stream_free(&m.stream);
     return PTIE_OK;

@@ -108,14 +108,8 @@ static void draw_channels(discharge *d, ptie_random *random, const ptie_axes *ax
 static ptie_status draw_discharge(float *map, const ptie_scene *scene, ptie_random *random,
                                   const ptie_axes *axes, discharge *d) {
     double size = ptie_random_log_uniform(random, 0.15, 0.6);
-    double turning = ptie_speed_draw(scene, random) / size * scene->time_s;
-    ptie_turbulence_params params = {.key = ptie_key_draw(random),
-                                     .period = 2.5,
-                                     .outer = size,
-                                     .inner = size * ptie_random_uniform(random, 0.1, 0.25),
-                                     .turns = 0.15 * turning,
-                                     .drift = 0.2 * turning * size,
-                                     .cells = ptie_turbulence_cells(scene, 2.5)};
+    double inner = ptie_random_uniform(random, 0.1, 0.25), speed = ptie_speed_draw(scene, random);
+    ptie_turbulence_params params = ptie_turbulence_draw(scene, random, size, inner, 0.5 * speed);
     d->flicker = ptie_draw(random, 0.05, 0.4);
     d->halo = ptie_draw(random, 2.5, 6);
     PTIE_TRY(ptie_turbulence_create(&d->turbulence, &params));

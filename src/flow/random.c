@@ -37,16 +37,10 @@ static float screen_at(const void *flow, float x, float y) {
 
 static ptie_status draw_field(island *o, const ptie_scene *scene, ptie_random *random, double low,
                               double high) {
-    double outer = ptie_random_log_uniform(random, low, high),
+    double outer = ptie_random_log_uniform(random, low, high);
+    double inner = ptie_random_log_uniform(random, 0.04, 0.3),
            speed = ptie_speed_draw(scene, random);
-    double period = fmax(2.5, 2.5 * outer);
-    ptie_turbulence_params params = {.key = ptie_key_draw(random),
-                                     .period = period,
-                                     .outer = outer,
-                                     .inner = outer * ptie_random_log_uniform(random, 0.04, 0.3),
-                                     .drift = speed * scene->time_s,
-                                     .turns = 0.05 * speed / outer * scene->time_s,
-                                     .cells = ptie_turbulence_cells(scene, period)};
+    ptie_turbulence_params params = ptie_turbulence_draw(scene, random, outer, inner, speed);
     return ptie_turbulence_create(&o->turbulence, &params);
 }
 

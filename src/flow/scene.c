@@ -185,6 +185,7 @@ float ptie_draw_log(ptie_random *random, double low, double high) {
 }
 
 float ptie_bell(float t) {
+    if (fabsf(t) > 6) return 0; /* 1.5e-8 */
     return expf(-0.5f * t * t);
 }
 
@@ -195,5 +196,6 @@ float ptie_smoothstep(float t) {
 }
 
 float ptie_rise(float t) {
+    if (fabsf(t) > 9) return t > 0 ? 1 : 0; /* 1.5e-8 */
     return 1 / (1 + expf(-2 * t));
 }

@@ -5,22 +5,6 @@
 
 #define TWO_PI 6.28318530717958647693
 
-static ptie_turbulence_params turbulence_draw(const ptie_stream *stream, const ptie_scene *scene,
-                                              ptie_random *random, double length) {
-    double width = (double)(stream->radius + stream->spread * 0.4f * (float)length);
-    double outer = width * ptie_random_log_uniform(random, 2.5, 8);
-    double period = fmax(1.4 * length, 3 * outer);
-    return (ptie_turbulence_params){
-        .key = ptie_key_draw(random),
-        .period = period,
-        .outer = outer,
-        .inner = outer * ptie_random_uniform(random, 0.04, 0.2),
-        .drift = stream->speed * scene->time_s,
-        .turns = ptie_random_uniform(random, 0.03, 0.12) * stream->speed / outer * scene->time_s,
-        .cells = ptie_turbulence_cells(scene, period),
-    };
-}
-
 ptie_status ptie_stream_draw(ptie_stream *stream, const ptie_scene *scene, ptie_random *random,
                              const ptie_stream_ranges *ranges, double length) {
     *stream = (ptie_stream){
@@ -28,6 +12,7 @@ ptie_status ptie_stream_draw(ptie_stream *stream, const ptie_scene *scene, ptie_
         .spread = ptie_draw(random, ranges->spread_low, ranges->spread_high),
         .folding = ptie_draw(random, ranges->folding_low, ranges->folding_high),
     };
+    stream->reach = 6;
     stream->onset = stream->radius * ptie_draw(random, 2, 12);
     stream->sway = ptie_chance(random, 0.5) ? ptie_draw(random, 0.05, 0.35) : 0;
     stream->sway_wave = ptie_draw(random, 0.2, 0.9) / stream->radius;
@@ -35,7 +20,11 @@ ptie_status ptie_stream_draw(ptie_stream *stream, const ptie_scene *scene, ptie_
     double sway_start = ptie_random_uniform(random, 0, TWO_PI);
     double turns = (double)stream->sway_wave * stream->speed * scene->time_s;
     stream->sway_phase = (float)fmod(sway_start + turns, TWO_PI);
-    ptie_turbulence_params params = turbulence_draw(stream, scene, random, length);
+    double width = (double)(stream->radius + stream->spread * 0.4f * (float)length);
+    double outer = width * ptie_random_log_uniform(random, 2.5, 8);
+    double inner = ptie_random_uniform(random, 0.04, 0.2);
+    ptie_turbulence_params params =
+        ptie_turbulence_draw(scene, random, outer, inner, stream->speed);
     return ptie_turbulence_create(&stream->turbulence, &params);
 }
 
@@ -44,10 +33,13 @@ void ptie_stream_free(ptie_stream *stream) {
 }
 
 ptie_parcel ptie_stream_at(const ptie_stream *stream, float x, float y) {
+    float width = stream->radius + stream->spread * (x > 0 ? x : 0);
+    /* Folds of four standard deviations away from anything: spare the turbulence. */
+    if (fabsf(y) > width * (stream->reach + 4 * stream->folding))
+        return (ptie_parcel){.x = x, .across = y / width, .width = width};
     float field[PTIE_TURBULENCE_FIELDS];
     ptie_turbulence_at(&stream->turbulence, x, y, field);
     float grown = ptie_smoothstep(x / stream->onset);
-    float width = stream->radius + stream->spread * (x > 0 ? x : 0);
     float fold = stream->folding * grown * width;
     float sway = stream->sway * grown * width;
     float wave = sway > 0 ? sway * sinf(stream->sway_wave * x - stream->sway_phase + field[3]) : 0;

@@ -13,7 +13,8 @@ typedef struct ptie_stream {
     float onset;                       /* distance over which the turbulence sets in */
     float folding;                     /* displacement by the turbulence, in half-widths */
     float sway, sway_wave, sway_phase; /* meandering: amplitude in half-widths, rad per unit, rad */
-    double speed;                      /* units per second */
+    float reach;  /* half-widths beyond which there is nothing to see; 6 unless set */
+    double speed; /* units per second */
 } ptie_stream;
 
 /* Ranges a stream is drawn from; all in units but `folding`. */

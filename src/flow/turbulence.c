@@ -16,11 +16,21 @@ double ptie_von_karman(double frequency, double outer, double inner) {
            pow(frequency * frequency + f0 * f0, -11.0 / 6);
 }
 
-int32_t ptie_turbulence_cells(const ptie_scene *scene, double period) {
-    double unit_px = scene->width < scene->height ? scene->width : scene->height;
+ptie_turbulence_params ptie_turbulence_draw(const ptie_scene *scene, ptie_random *random,
+                                            double outer, double inner, double speed) {
+    double width = scene->width, height = scene->height, unit_px = fmin(width, height);
+    /* Longer than the frame, tilted or not, so that no eddy is seen twice. */
+    double period = fmax(1.6 * fmax(width, height) / unit_px, 2 * outer);
     int32_t cells = 32;
     while (cells < 1024 && cells * 4.5 < period * unit_px) cells *= 2;
-    return cells;
+    double way = speed * scene->time_s, pace = ptie_random_uniform(random, 0.03, 0.12);
+    return (ptie_turbulence_params){.key = ptie_key_draw(random),
+                                    .period = period,
+                                    .outer = outer,
+                                    .inner = inner * outer,
+                                    .drift = way,
+                                    .turns = pace * way / outer,
+                                    .cells = cells};
 }
 
 /* Amplitude and turning rate of the modes with kx^2 + ky^2 = k2, for k2 up to `limit`^2. */

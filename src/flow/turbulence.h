@@ -32,8 +32,11 @@ void ptie_turbulence_free(ptie_turbulence *turbulence); /* a zeroed one is fine 
 void ptie_turbulence_at(const ptie_turbulence *turbulence, float x, float y,
                         float fields[PTIE_TURBULENCE_FIELDS]);
 
-/* Cells that resolve a tile of `period` units in this scene to about two px. */
-int32_t ptie_turbulence_cells(const ptie_scene *scene, double period);
+/* A realisation as the scene's time finds it, drifting at `speed` (units per second) and turning
+   over as it goes.  `inner` is a share of `outer`; the tile is as large as the frame or twice the
+   outer scale, in cells of about four px. */
+ptie_turbulence_params ptie_turbulence_draw(const ptie_scene *scene, ptie_random *random,
+                                            double outer, double inner, double speed);
 
 /* Power spectral density of von Karman's phase, rad^2 per (cycle/unit)^2, for r0 = 1 unit. */
 double ptie_von_karman(double frequency, double outer, double inner);
