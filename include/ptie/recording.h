@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Recordings: frames over time, in files of many kinds.  docs/formats.md.
  *
- * Reads   NPY, PNG (8/16 bit grey; colour is refused), TIFF (single, multi-page, 8/16 bit, float),
- *         HDF5 (any numeric 2-D or 3-D data set: "file.h5:/path/in/file"), a folder or a pattern with
- *         one %d ("flow_%02d.png") as numbered frames.
+ * Reads   NPY, PNG (grey; colour is refused), TIFF (single, multi-page, integers and float), HDF5 (any
+ *         numeric 2-D or 3-D data set: "file.h5:/path/in/file"), a folder or a pattern with one %d or %0Nd
+ *         ("flow_%02d.png") as numbered frames.
  * Writes  NPY, TIFF float32, HDF5 (NeXus), PNG (16 bit with the scale in its text chunks; a pattern for
  *         several frames).
  */
@@ -32,8 +32,8 @@ PTIE_API void ptie_recording_close(ptie_recording *recording); /* NULL is fine *
 PTIE_API const ptie_recording_info *ptie_recording_get_info(const ptie_recording *recording);
 
 /* frame (out): height x width values as stored, converted to float.  Not thread-safe per recording.
-   Errors: PTIE_EINVAL (frame number), PTIE_EIO, PTIE_EFORMAT, PTIE_ENUMERIC (NaN or infinity: names the
-   pixel). */
+   Errors: PTIE_EINVAL (frame number), PTIE_ESIZE (a file of a sequence unlike the first), PTIE_EIO,
+   PTIE_EFORMAT, PTIE_EUNSUPPORTED, PTIE_ENOMEM, PTIE_ENUMERIC (NaN or infinity: names the pixel). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_recording_read(ptie_recording *recording, int64_t frame,
                                                         float *data);
 
@@ -41,15 +41,18 @@ typedef struct ptie_writer ptie_writer;
 
 /* Creates a file for `info->frames` frames (0: not known yet) of one map; the kind is chosen by the
    ending of `path`: .npy .tif .tiff .h5 .hdf5 .png.  info->unit, frame_rate_hz, pixel_m are stored where
-   the format can.  `name` is what the map is ("phase", "denoised").  The file appears under `path` only
-   at ptie_writer_close.  Errors: PTIE_EINVAL, PTIE_EEXIST, PTIE_EIO, PTIE_EUNSUPPORTED (ending). */
+   the format can.  `name` is what the map is ("phase", "denoised"): letters, digits, '_', '-'.  The file
+   appears under `path` only at ptie_writer_close.  Errors: PTIE_EINVAL, PTIE_EEXIST, PTIE_EIO, PTIE_ENOMEM,
+   PTIE_EUNSUPPORTED (ending). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_writer_create(ptie_writer **out, const char *path,
                                                        const char *name,
                                                        const ptie_recording_info *info,
                                                        bool overwrite);
-/* Appends one frame of height x width floats. */
+/* Appends one frame of height x width floats.  Errors: PTIE_EINVAL (a second frame for one PNG), PTIE_ESTATE
+   (more frames than announced), PTIE_EIO, PTIE_ENOMEM, PTIE_ENUMERIC (PNG: NaN or infinity), PTIE_EEXIST. */
 PTIE_API PTIE_NODISCARD ptie_status ptie_writer_append(ptie_writer *writer, const float *frame);
-/* Completes the file and frees the writer, also on failure (then no file is left). */
+/* Completes the file and frees the writer, also on failure (then no file is left).  Errors: PTIE_EIO,
+   PTIE_ESTATE (fewer frames than announced, or none). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_writer_close(ptie_writer *writer);
 /* Frees the writer and leaves no file.  NULL is fine. */
 PTIE_API void ptie_writer_discard(ptie_writer *writer);

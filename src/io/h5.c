@@ -237,6 +237,33 @@ bool ptie_h5_exists(ptie_h5 *h5, const char *path) {
     return H5Oexists_by_name(h5->file, path, H5P_DEFAULT) > 0;
 }
 
+ptie_status ptie_h5_sample(ptie_h5 *h5, const char *path, char name[16]) {
+    LOCK_HDF5;
+    SCOPED_ID set = H5I_INVALID_HID;
+    PTIE_TRY(open_set(h5, path, &set));
+    SCOPED_ID type = H5Dget_type(set);
+    H5T_class_t kind = H5Tget_class(type);
+    if (kind != H5T_INTEGER && kind != H5T_FLOAT)
+        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: %s does not hold numbers", h5->path, path);
+    char letter = kind == H5T_FLOAT ? 'f' : H5Tget_sign(type) == H5T_SGN_NONE ? 'u' : 'i';
+    snprintf(name, 16, "%c%zu", letter, 8 * H5Tget_size(type));
+    return PTIE_OK;
+}
+
+static herr_t list_link(hid_t root, const char *path, const H5L_info_t *link, void *lines) {
+    if (link->type != H5L_TYPE_HARD) return 0; /* soft links name what is listed anyway */
+    SCOPED_ID object = H5Oopen(root, path, H5P_DEFAULT);
+    if (object >= 0 && H5Iget_type(object) == H5I_DATASET) ptie_text_append(lines, "/%s\n", path);
+    return 0;
+}
+
+ptie_status ptie_h5_list(ptie_h5 *h5, ptie_text *lines) {
+    LOCK_HDF5;
+    if (H5Lvisit(h5->file, H5_INDEX_NAME, H5_ITER_INC, list_link, lines) < 0)
+        return h5_failure(h5, PTIE_EFORMAT, "list", "the data sets");
+    return lines->failed ? PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", h5->path) : PTIE_OK;
+}
+
 typedef struct rows {
     uint64_t first, count;
 } rows;
@@ -342,6 +369,13 @@ ptie_status ptie_h5_set_number(ptie_h5 *h5, const char *object, const char *name
     LOCK_HDF5;
     SCOPED_ID space = H5Screate(H5S_SCALAR);
     return write_attribute(h5, object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, space, &value);
+}
+
+ptie_status ptie_h5_set_numbers(ptie_h5 *h5, const char *object, const char *name, const double *values,
+                                size_t count) {
+    LOCK_HDF5;
+    SCOPED_ID space = H5Screate_simple(1, (hsize_t[]){count}, NULL);
+    return write_attribute(h5, object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, space, values);
 }
 
 ptie_status ptie_h5_set_integer(ptie_h5 *h5, const char *object, const char *name, int64_t value) {

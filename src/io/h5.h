@@ -7,6 +7,7 @@
 #define PTIE_IO_H5_H
 
 #include "base/status.h"
+#include "base/text.h"
 
 typedef struct ptie_h5 ptie_h5;
 
@@ -28,6 +29,10 @@ ptie_status ptie_h5_dataset(ptie_h5 *h5, const char *path, ptie_h5_type type, in
 /* Shape of a data set; rank 1..4. */
 ptie_status ptie_h5_shape(ptie_h5 *h5, const char *path, int32_t *rank, uint64_t dims[4]);
 bool ptie_h5_exists(ptie_h5 *h5, const char *path);
+/* How the samples are stored: "u16", "f32", ...  PTIE_EUNSUPPORTED for text, compounds and the like. */
+ptie_status ptie_h5_sample(ptie_h5 *h5, const char *path, char name[16]);
+/* Appends the paths of all data sets, one to a line, in order of their names. */
+ptie_status ptie_h5_list(ptie_h5 *h5, ptie_text *lines);
 
 /* Rows first .. first+count-1 along the first dimension.  `type` is that of the memory; HDF5 converts. */
 ptie_status ptie_h5_write(ptie_h5 *h5, const char *path, ptie_h5_type type, uint64_t first,
@@ -40,6 +45,8 @@ ptie_status ptie_h5_set_text(ptie_h5 *h5, const char *object, const char *name, 
 ptie_status ptie_h5_set_texts(ptie_h5 *h5, const char *object, const char *name,
                               const char *const *values, size_t count); /* a list of strings */
 ptie_status ptie_h5_set_number(ptie_h5 *h5, const char *object, const char *name, double value);
+ptie_status ptie_h5_set_numbers(ptie_h5 *h5, const char *object, const char *name, const double *values,
+                                size_t count); /* a list of numbers */
 ptie_status ptie_h5_set_integer(ptie_h5 *h5, const char *object, const char *name, int64_t value);
 /* *value is NUL-terminated, freed with ptie_free.  PTIE_EFORMAT when absent or of another kind. */
 ptie_status ptie_h5_get_text(ptie_h5 *h5, const char *object, const char *name, char **value);

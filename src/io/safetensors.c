@@ -6,11 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "base/memory.h"
-#include "base/text.h"
 #include "io/endian.h"
 #include "io/input.h"
+#include "io/stream.h"
 
 #define LENGTH_BYTES 8
 #define HEADER_LIMIT 100000000u /* of the format */
@@ -75,44 +74,27 @@ static char *header_text(const ptie_tensor_view *tensors, size_t tensor_count, c
     return text;
 }
 
-static void write_floats(FILE *stream, const float *values, uint64_t count) {
-    unsigned char block[4096];
-    while (count > 0) {
-        size_t now = count < sizeof block / 4 ? (size_t)count : sizeof block / 4;
-        for (size_t i = 0; i < now; i++) ptie_put_f32(block + 4 * i, values[i]);
-        fwrite(block, 4, now, stream);
-        values += now;
-        count -= now;
-    }
-}
-
 static void write_content(FILE *stream, const char *header, const ptie_tensor_view *tensors, size_t count) {
-    unsigned char length[LENGTH_BYTES];
     size_t used = strlen(header);
     size_t padded = (used + DATA_ALIGNMENT - 1) / DATA_ALIGNMENT * DATA_ALIGNMENT;
-    ptie_put_u64(length, padded);
-    fwrite(length, 1, sizeof length, stream);
+    ptie_write_le(stream, padded, LENGTH_BYTES);
     fwrite(header, 1, used, stream);
     for (size_t i = used; i < padded; i++) fputc(' ', stream);
     for (size_t i = 0; i < count; i++)
-        write_floats(stream, tensors[i].data, view_bytes(&tensors[i]) / sizeof(float));
+        ptie_write_floats(stream, tensors[i].data, view_bytes(&tensors[i]) / sizeof(float));
 }
 
 ptie_status ptie_safetensors_write(const char *path, const ptie_tensor_view *tensors, size_t tensor_count,
                                    const ptie_note *notes, size_t note_count, bool overwrite) {
-    ptie_output_file file;
-    FILE *stream;
-    PTIE_TRY(ptie_output_open(&file, path, overwrite));
+    ptie_stream stream;
     char *header = header_text(tensors, tensor_count, notes, note_count);
-    ptie_status status = header ? ptie_output_stream(&file, &stream)
-                                : PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
+    if (!header) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
+    ptie_status status = ptie_stream_open(&stream, path, overwrite);
     if (status == PTIE_OK) {
-        write_content(stream, header, tensors, tensor_count);
-        status = ptie_close_written(stream, path);
+        write_content(stream.out, header, tensors, tensor_count);
+        status = ptie_stream_complete(&stream);
     }
     free(header);
-    if (status == PTIE_OK) return ptie_output_commit(&file);
-    ptie_output_discard(&file);
     return status;
 }
 
@@ -242,7 +224,7 @@ static ptie_status read_parts(ptie_safetensors *file, const char *path, FILE *st
     unsigned char length[LENGTH_BYTES];
     if (fread(length, 1, sizeof length, stream) != sizeof length)
         return PTIE_FAIL(PTIE_EFORMAT, "%s: too short for a safetensors file", path);
-    uint64_t bytes = ptie_get_u64(length);
+    uint64_t bytes = ptie_get_le(length, LENGTH_BYTES);
     if (bytes > HEADER_LIMIT || bytes > file_bytes - LENGTH_BYTES)
         return PTIE_FAIL(PTIE_EFORMAT, "%s: bad header length %llu in a file of %llu bytes", path,
                          (unsigned long long)bytes, (unsigned long long)file_bytes);

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* <ptie/recording.h>: arguments checked, then inward. */
+#include <ptie/recording.h>
+
+#include <string.h>
+
+#include "api/params.h"
+#include "io/recording.h"
+
+#define LONGEST_NAME 63
+
+ptie_status ptie_recording_open(ptie_recording **out, const char *path) {
+    static const char where[] = "ptie_recording_open";
+    PTIE_TRY(ptie_check_pointer(out, where, "out"));
+    *out = NULL;
+    PTIE_TRY(ptie_check_pointer(path, where, "path"));
+    return ptie_io_open(out, path);
+}
+
+void ptie_recording_close(ptie_recording *recording) {
+    ptie_io_close(recording);
+}
+
+const ptie_recording_info *ptie_recording_get_info(const ptie_recording *recording) {
+    return recording ? ptie_io_info(recording) : NULL;
+}
+
+ptie_status ptie_recording_read(ptie_recording *recording, int64_t frame, float *data) {
+    static const char where[] = "ptie_recording_read";
+    PTIE_TRY(ptie_check_pointer(recording, where, "recording"));
+    PTIE_TRY(ptie_check_pointer(data, where, "data"));
+    PTIE_TRY(ptie_check_integer(frame, 0, ptie_io_info(recording)->frames - 1, where, "frame"));
+    return ptie_io_read(recording, frame, data);
+}
+
+/* A name is a word of files and paths: letters, digits, '_' and '-'. */
+static ptie_status check_name(const char *name, const char *where) {
+    PTIE_TRY(ptie_check_pointer(name, where, "name"));
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    size_t length = strlen(name);
+    if (length >= 1 && length <= LONGEST_NAME && strspn(name, letters) == length) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EINVAL, "%s: name (expected 1 to %d letters, digits, '_' or '-', found '%s')", where,
+                     LONGEST_NAME, name);
+}
+
+static ptie_status check_info(const ptie_recording_info *info, const char *where) {
+    PTIE_TRY(ptie_check_pointer(info, where, "info"));
+    PTIE_TRY(ptie_check_integer(info->width_px, 1, 32768, where, "width_px"));
+    PTIE_TRY(ptie_check_integer(info->height_px, 1, 32768, where, "height_px"));
+    PTIE_TRY(ptie_check_integer(info->frames, 0, INT64_MAX, where, "frames"));
+    PTIE_TRY(ptie_check_number(info->frame_rate_hz, 0, 1e15, where, "frame_rate_hz"));
+    PTIE_TRY(ptie_check_number(info->pixel_m, 0, 1, where, "pixel_m"));
+    if (!memchr(info->unit, 0, sizeof info->unit))
+        return PTIE_FAIL(PTIE_EINVAL, "%s: unit is not terminated (expected at most %zu bytes)", where,
+                         sizeof info->unit - 1);
+    return PTIE_OK;
+}
+
+ptie_status ptie_writer_create(ptie_writer **out, const char *path, const char *name,
+                               const ptie_recording_info *info, bool overwrite) {
+    static const char where[] = "ptie_writer_create";
+    PTIE_TRY(ptie_check_pointer(out, where, "out"));
+    *out = NULL;
+    PTIE_TRY(ptie_check_pointer(path, where, "path"));
+    PTIE_TRY(check_name(name, where));
+    PTIE_TRY(check_info(info, where));
+    return ptie_io_create(out, path, name, info, overwrite);
+}
+
+ptie_status ptie_writer_append(ptie_writer *writer, const float *frame) {
+    static const char where[] = "ptie_writer_append";
+    PTIE_TRY(ptie_check_pointer(writer, where, "writer"));
+    PTIE_TRY(ptie_check_pointer(frame, where, "frame"));
+    return ptie_io_append(writer, frame);
+}
+
+ptie_status ptie_writer_close(ptie_writer *writer) {
+    PTIE_TRY(ptie_check_pointer(writer, "ptie_writer_close", "writer"));
+    return ptie_io_complete(writer);
+}
+
+void ptie_writer_discard(ptie_writer *writer) {
+    ptie_io_discard(writer);
+}

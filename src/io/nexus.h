@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Maps over time as NeXus lays them out in HDF5 (NXdata): silx, h5web and NeXpy plot them without a click.
+ *
+ *   /            @default = "entry"
+ *   /entry       @NX_class = "NXentry" @default = "data"
+ *   /entry/data  @NX_class = "NXdata" @signal = the first map @auxiliary_signals = the others
+ *                @axes = ["time", "y", "x"]
+ *     NAME       [T, H, W] float32, @units @long_name @interpretation = "image"
+ *     time y x   [T] [H] [W] float64, @units
+ */
+#ifndef PTIE_IO_NEXUS_H
+#define PTIE_IO_NEXUS_H
+
+#include "io/h5.h"
+
+#define PTIE_NEXUS_DATA "/entry/data"
+
+typedef struct ptie_nexus_axes {
+    uint64_t frames;                /* 0: not known yet, grows */
+    int32_t width_px, height_px;
+    int64_t first_frame, frame_step; /* of the recording they come from; step 0 means 1 */
+    double frame_rate_hz;           /* > 0: time in s, else the frame's number */
+    double pixel_m;                 /* > 0: y and x in m, else in px */
+} ptie_nexus_axes;
+
+typedef struct ptie_nexus_signal {
+    const char *name, *long_name; /* "phase", "Phase of the gas flow" (NULL: the name) */
+    const char *unit;             /* "rad"; "" for none */
+} ptie_nexus_signal;
+
+/* Makes the groups, the axes and `count` >= 1 empty signals, one frame to a chunk.  Frames are then written
+   with ptie_h5_write(h5, PTIE_NEXUS_DATA "/NAME", PTIE_H5_F32, t, n, ...). */
+ptie_status ptie_nexus_begin(ptie_h5 *h5, const ptie_nexus_axes *axes, const ptie_nexus_signal *signals,
+                             size_t count);
+/* Completes the time axis when axes->frames, now known, was 0 at the beginning. */
+ptie_status ptie_nexus_end(ptie_h5 *h5, const ptie_nexus_axes *axes);
+
+#endif

@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* TIFF and BigTIFF: every page is a frame; strips or tiles, 8 to 64 bits, integer or float. */
+#include <stdlib.h>
+#include <string.h>
+#include <tiffio.h>
+
+#include "base/text.h"
+#include "io/array.h"
+#include "io/input.h"
+#include "io/reader.h"
+#include "io/sample.h"
+
+/* The densest codec (Zstandard) codes a block of 128 KiB in 4 bytes. */
+#define DENSEST 32768
+/* A tile may be larger than the image, by this at most. */
+#define TILE_MARGIN_PX 4096
+
+typedef struct tiff_stack {
+    TIFF *tiff;
+    char *path;
+    uint64_t file_bytes;
+    uint64_t *pages; /* offset of each page's directory */
+    int64_t page_count;
+    size_t page_capacity;
+    int32_t width, height;
+    ptie_sample sample;
+    char message[128]; /* libtiff's first complaint */
+} tiff_stack;
+
+static bool tiff_probe(const unsigned char *head) {
+    static const char magic[4][5] = {"II*\0", "MM\0*", "II+\0", "MM\0+"};
+    for (size_t i = 0; i < 4; i++)
+        if (memcmp(head, magic[i], 4) == 0) return true;
+    return false;
+}
+
+static int on_error(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments) {
+    (void)tiff, (void)module;
+    tiff_stack *stack = user;
+    if (!stack->message[0]) vsnprintf(stack->message, sizeof stack->message, format, arguments);
+    return 1; /* told: the process-wide handler, which prints, is not called */
+}
+
+static int on_warning(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments) {
+    (void)tiff, (void)user, (void)module, (void)format, (void)arguments;
+    return 1;
+}
+
+static ptie_status damaged(tiff_stack *stack, int64_t page) {
+    ptie_status status = PTIE_FAIL(PTIE_EFORMAT, "%s: damaged TIFF (page %lld): %s", stack->path,
+                                   (long long)page, stack->message[0] ? stack->message : "no reason given");
+    stack->message[0] = 0;
+    return status;
+}
+
+static void tiff_close(void *state) {
+    tiff_stack *stack = state;
+    if (!stack) return;
+    if (stack->tiff) TIFFClose(stack->tiff);
+    ptie_free(stack->pages);
+    ptie_free(stack->path);
+    ptie_free(stack);
+}
+
+static uint16_t tag16(TIFF *tiff, uint32_t tag) {
+    uint16_t value = 0;
+    TIFFGetFieldDefaulted(tiff, tag, &value);
+    return value;
+}
+
+static ptie_status refuse(const tiff_stack *stack, const char *what, const char *expected, unsigned found) {
+    return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: page %lld: %s (expected %s, found %u)", stack->path,
+                     (long long)stack->page_count, what, expected, found);
+}
+
+/* The current page's sample type. */
+static ptie_status page_sample(const tiff_stack *stack, ptie_sample *sample) {
+    const unsigned channels = tag16(stack->tiff, TIFFTAG_SAMPLESPERPIXEL);
+    const unsigned meaning = tag16(stack->tiff, TIFFTAG_PHOTOMETRIC);
+    const unsigned format = tag16(stack->tiff, TIFFTAG_SAMPLEFORMAT);
+    const unsigned bits = tag16(stack->tiff, TIFFTAG_BITSPERSAMPLE);
+    if (channels != 1) return refuse(stack, "colour image", "1 sample per pixel", channels);
+    if (meaning != PHOTOMETRIC_MINISBLACK)
+        return refuse(stack, "not a grey image", "photometric interpretation 1", meaning);
+    const char kind = format == SAMPLEFORMAT_UINT     ? 'u'
+                      : format == SAMPLEFORMAT_INT    ? 'i'
+                      : format == SAMPLEFORMAT_IEEEFP ? 'f'
+                                                      : 0;
+    *sample = (ptie_sample){kind, bits % 8 == 0 ? bits / 8 : 0};
+    if (!ptie_sample_known(*sample))
+        return refuse(stack, kind == 'f' ? "float sample" : "sample type", kind == 'f' ? "32 or 64 bits"
+                      : "integers of 8, 16, 32 or 64 bits", bits);
+    return PTIE_OK;
+}
+
+static ptie_status check_tiles(const tiff_stack *stack) {
+    uint32_t width = 0, height = 0;
+    TIFFGetField(stack->tiff, TIFFTAG_TILEWIDTH, &width);
+    TIFFGetField(stack->tiff, TIFFTAG_TILELENGTH, &height);
+    if (width >= 1 && height >= 1 && width <= (uint32_t)stack->width + TILE_MARGIN_PX &&
+        height <= (uint32_t)stack->height + TILE_MARGIN_PX)
+        return PTIE_OK;
+    return PTIE_FAIL(PTIE_EFORMAT, "%s: page %lld: bad tile size %u x %u", stack->path,
+                     (long long)stack->page_count, width, height);
+}
+
+/* Checks the current page against the first one. */
+static ptie_status check_page(tiff_stack *stack, ptie_recording_info *info) {
+    uint32_t width = 0, height = 0;
+    ptie_sample sample;
+    ptie_recording_info page;
+    TIFFGetField(stack->tiff, TIFFTAG_IMAGEWIDTH, &width);
+    TIFFGetField(stack->tiff, TIFFTAG_IMAGELENGTH, &height);
+    PTIE_TRY(ptie_info_set_size(&page, stack->path, width, height));
+    PTIE_TRY(page_sample(stack, &sample));
+    if (stack->page_count == 0) {
+        stack->width = info->width_px = page.width_px;
+        stack->height = info->height_px = page.height_px;
+        stack->sample = sample;
+        ptie_sample_name(info->sample, sample);
+    }
+    if (page.width_px != stack->width || page.height_px != stack->height ||
+        sample.kind != stack->sample.kind || sample.bytes != stack->sample.bytes)
+        return PTIE_FAIL(PTIE_EUNSUPPORTED,
+                         "%s: page %lld differs from page 0 (expected %d x %d %c%zu, found %d x %d %c%zu)",
+                         stack->path, (long long)stack->page_count, stack->width, stack->height,
+                         stack->sample.kind, 8 * stack->sample.bytes, page.width_px, page.height_px,
+                         sample.kind, 8 * sample.bytes);
+    if (TIFFIsTiled(stack->tiff)) PTIE_TRY(check_tiles(stack));
+    bool plain = tag16(stack->tiff, TIFFTAG_COMPRESSION) == COMPRESSION_NONE;
+    return ptie_check_fits(stack->path, (uint64_t)width * height * sample.bytes, stack->file_bytes,
+                           plain ? 1 : DENSEST);
+}
+
+/* Remembers where the current page is. */
+static ptie_status add_page(tiff_stack *stack) {
+    PTIE_TRY(ptie_array_room(&stack->pages, (size_t)stack->page_count, &stack->page_capacity,
+                             sizeof *stack->pages, stack->path));
+    stack->pages[stack->page_count++] = TIFFCurrentDirOffset(stack->tiff);
+    return PTIE_OK;
+}
+
+/* Walks the pages; previews and masks are not frames. */
+static ptie_status list_pages(tiff_stack *stack, ptie_recording_info *info) {
+    for (int64_t page = 0;; page++) {
+        uint32_t kind = 0;
+        TIFFGetField(stack->tiff, TIFFTAG_SUBFILETYPE, &kind);
+        if (!(kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK))) {
+            PTIE_TRY(check_page(stack, info));
+            PTIE_TRY(add_page(stack));
+        }
+        if (TIFFLastDirectory(stack->tiff)) break;
+        if (!TIFFReadDirectory(stack->tiff)) return damaged(stack, page + 1);
+    }
+    if (stack->page_count == 0) return PTIE_FAIL(PTIE_EFORMAT, "%s: TIFF without an image", stack->path);
+    info->frames = stack->page_count;
+    return PTIE_OK;
+}
+
+/* The rest of the line "key=..." of ImageJ's description, or false. */
+static bool description_value(const char *text, const char *key, char value[32]) {
+    size_t length = strlen(key);
+    for (; text; text = strchr(text, '\n')) {
+        text += *text == '\n';
+        if (strncmp(text, key, length) != 0 || text[length] != '=') continue;
+        snprintf(value, 32, "%.*s", (int)strcspn(text + length + 1, "\r\n"), text + length + 1);
+        return true;
+    }
+    return false;
+}
+
+/* Metres in one unit of the ImageJ scale; 0 if it is no length. */
+static double unit_m(const char *unit) {
+    char text[40];
+    double length;
+    bool micron = strncmp(unit, "micron", 6) == 0 || strcmp(unit, "\\u00B5m") == 0;
+    snprintf(text, sizeof text, "1 %s", micron ? "um" : unit);
+    return ptie_parse_quantity(text, PTIE_LENGTH, &length) ? 0 : length;
+}
+
+/* Scale, rate and unit as ImageJ describes them in the first page. */
+static ptie_status take_description(tiff_stack *stack, ptie_recording_info *info) {
+    char *text = NULL;
+    char value[32];
+    float per_unit = 0;
+    double number;
+    if (!TIFFGetField(stack->tiff, TIFFTAG_IMAGEDESCRIPTION, &text) || strncmp(text, "ImageJ=", 7) != 0)
+        return PTIE_OK;
+    int64_t images;
+    if (stack->page_count == 1 && description_value(text, "images", value) &&
+        ptie_parse_integer(value, 2, INT64_MAX, &images))
+        return PTIE_FAIL(PTIE_EUNSUPPORTED,
+                         "%s: ImageJ stack of %lld images behind one page (save it as BigTIFF or HDF5)",
+                         stack->path, (long long)images);
+    if (description_value(text, "unit", value) && TIFFGetField(stack->tiff, TIFFTAG_XRESOLUTION, &per_unit) &&
+        per_unit > 0)
+        info->pixel_m = unit_m(value) / (double)per_unit;
+    if (description_value(text, "finterval", value) && !ptie_parse_quantity(value, PTIE_NUMBER, &number) &&
+        number > 0)
+        info->frame_rate_hz = 1 / number;
+    if (description_value(text, "vunit", value)) snprintf(info->unit, sizeof info->unit, "%.15s", value);
+    return PTIE_OK;
+}
+
+static ptie_status go_to_page(tiff_stack *stack, int64_t page) {
+    if (TIFFCurrentDirOffset(stack->tiff) == stack->pages[page]) return PTIE_OK;
+    return TIFFSetSubDirectory(stack->tiff, stack->pages[page]) ? PTIE_OK : damaged(stack, page);
+}
+
+static ptie_status tiff_load(tiff_stack *stack, ptie_recording_info *info, const char *path) {
+    FILE *stream;
+    stack->path = ptie_strdup(path);
+    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+    if (!stack->path || !options) {
+        TIFFOpenOptionsFree(options);
+        return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
+    }
+    TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, stack);
+    TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, stack);
+    ptie_status status = ptie_input_open(&stream, path, &stack->file_bytes);
+    if (status == PTIE_OK) {
+        fclose(stream);
+        stack->tiff = TIFFOpenExt(path, "rm", options); /* m: no memory map, a shrinking file is no SIGBUS */
+    }
+    TIFFOpenOptionsFree(options);
+    PTIE_TRY(status);
+    if (!stack->tiff) return damaged(stack, 0);
+    PTIE_TRY(list_pages(stack, info));
+    PTIE_TRY(go_to_page(stack, 0));
+    return take_description(stack, info);
+}
+
+static ptie_status tiff_open(void **state, ptie_recording_info *info, const char *path,
+                             const char *inside) {
+    (void)inside;
+    tiff_stack *stack;
+    PTIE_TRY(ptie_alloc_status(&stack, 1, sizeof *stack, path));
+    ptie_status status = tiff_load(stack, info, path);
+    if (status != PTIE_OK) {
+        tiff_close(stack);
+        stack = NULL;
+    }
+    *state = stack;
+    return status;
+}
+
+static ptie_status read_rows(tiff_stack *stack, int64_t frame, float *data, unsigned char *row) {
+    const size_t width = (size_t)stack->width;
+    for (uint32_t y = 0; y < (uint32_t)stack->height; y++) {
+        if (TIFFReadScanline(stack->tiff, row, y, 0) < 0) return damaged(stack, frame);
+        ptie_sample_convert(data + y * width, row, width, stack->sample);
+    }
+    return PTIE_OK;
+}
+
+/* Copies one tile; what sticks out of the image is dropped. */
+static void place_tile(const tiff_stack *stack, float *data, const unsigned char *tile, uint32_t x,
+                       uint32_t y, uint32_t tile_width, uint32_t tile_height) {
+    const uint32_t width = (uint32_t)stack->width, height = (uint32_t)stack->height;
+    const size_t columns = width - x < tile_width ? width - x : tile_width;
+    const size_t rows = height - y < tile_height ? height - y : tile_height;
+    for (size_t r = 0; r < rows; r++)
+        ptie_sample_convert(data + (y + r) * width + x, tile + r * tile_width * stack->sample.bytes, columns,
+                            stack->sample);
+}
+
+static ptie_status read_tiles(tiff_stack *stack, int64_t frame, float *data, unsigned char *tile) {
+    uint32_t tile_width = 0, tile_height = 0;
+    TIFFGetField(stack->tiff, TIFFTAG_TILEWIDTH, &tile_width);
+    TIFFGetField(stack->tiff, TIFFTAG_TILELENGTH, &tile_height);
+    for (uint32_t y = 0; y < (uint32_t)stack->height; y += tile_height)
+        for (uint32_t x = 0; x < (uint32_t)stack->width; x += tile_width) {
+            if (TIFFReadTile(stack->tiff, tile, x, y, 0, 0) < 0) return damaged(stack, frame);
+            place_tile(stack, data, tile, x, y, tile_width, tile_height);
+        }
+    return PTIE_OK;
+}
+
+static ptie_status tiff_read(void *state, int64_t frame, float *data) {
+    tiff_stack *stack = state;
+    unsigned char *buffer; /* one row or one tile */
+    PTIE_TRY(go_to_page(stack, frame));
+    bool tiled = TIFFIsTiled(stack->tiff);
+    tmsize_t bytes = tiled ? TIFFTileSize(stack->tiff) : TIFFScanlineSize(stack->tiff);
+    if (bytes < stack->width * (tmsize_t)stack->sample.bytes && !tiled) return damaged(stack, frame);
+    PTIE_TRY(ptie_alloc_status(&buffer, (size_t)bytes, 1, stack->path));
+    ptie_status status = tiled ? read_tiles(stack, frame, data, buffer)
+                               : read_rows(stack, frame, data, buffer);
+    ptie_free(buffer);
+    return status;
+}
+
+const ptie_reader ptie_read_tiff = {
+    .name = "TIFF", .probe = tiff_probe, .open = tiff_open, .read = tiff_read, .close = tiff_close};

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a file format must bring to be read. */
+#ifndef PTIE_IO_READER_H
+#define PTIE_IO_READER_H
+
+#include <ptie/recording.h>
+
+#include "base/status.h"
+
+/* Enough for the HDF5 signature behind a user block of 2048 bytes. */
+#define PTIE_HEAD_BYTES 2056
+
+#define PTIE_LONGEST_SIDE 32768 /* px */
+
+typedef struct ptie_reader {
+    const char *name; /* "PNG" */
+    /* Is it this format?  head: the file's first PTIE_HEAD_BYTES bytes, zeros behind its end. */
+    bool (*probe)(const unsigned char *head);
+    /* Opens the file and fills `info` (zeroed; `format` is done already).  `inside` names a data set in the
+       file, or is "".  On failure *state is NULL. */
+    ptie_status (*open)(void **state, ptie_recording_info *info, const char *path, const char *inside);
+    /* Frame 0 .. info->frames-1 as stored. */
+    ptie_status (*read)(void *state, int64_t frame, float *data);
+    void (*close)(void *state); /* NULL is fine */
+    bool has_data_sets;         /* `inside` may be other than "" */
+} ptie_reader;
+
+extern const ptie_reader ptie_read_npy, ptie_read_png, ptie_read_tiff, ptie_read_h5;
+/* Has no probe: numbered files, chosen by the path. */
+extern const ptie_reader ptie_read_sequence;
+
+/* Is `path` a folder, or a pattern ("flow_%02d.png")? */
+bool ptie_is_sequence(const char *path);
+
+/* Stores a frame size that was read from a file: 1 .. PTIE_LONGEST_SIDE px each. */
+ptie_status ptie_info_set_size(ptie_recording_info *info, const char *path, uint64_t width,
+                               uint64_t height);
+
+/* A frame that needs `needed` bytes cannot be in a file of `found`.  `densest`: how many bytes one byte of
+   the file can stand for (1 without compression). */
+ptie_status ptie_check_fits(const char *path, uint64_t needed, uint64_t found, uint64_t densest);
+
+#endif

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Recordings inside the library; contracts as in <ptie/recording.h>, arguments already checked. */
+#ifndef PTIE_IO_RECORDING_H
+#define PTIE_IO_RECORDING_H
+
+#include <ptie/recording.h>
+
+#include "base/status.h"
+
+ptie_status ptie_io_open(ptie_recording **out, const char *path);
+void ptie_io_close(ptie_recording *recording); /* NULL is fine */
+const ptie_recording_info *ptie_io_info(const ptie_recording *recording);
+ptie_status ptie_io_read(ptie_recording *recording, int64_t frame, float *data);
+
+ptie_status ptie_io_create(ptie_writer **out, const char *path, const char *name,
+                           const ptie_recording_info *info, bool overwrite);
+ptie_status ptie_io_append(ptie_writer *writer, const float *frame);
+ptie_status ptie_io_complete(ptie_writer *writer); /* ptie_writer_close */
+void ptie_io_discard(ptie_writer *writer);         /* NULL is fine */
+
+#endif

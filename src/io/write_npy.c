@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* NumPy's .npy: (T, H, W) float32, the data at byte 128.  T is filled in at the end. */
+#include <string.h>
+
+#include "base/memory.h"
+#include "io/endian.h"
+#include "io/stream.h"
+#include "io/writer.h"
+
+#define HEADER_BYTES 128
+
+typedef struct npy_output {
+    ptie_stream stream;
+    size_t width, height;
+} npy_output;
+
+static void write_header(const npy_output *npy, int64_t frames) {
+    char header[HEADER_BYTES + 1] = "\x93NUMPY\x01";
+    header[8] = HEADER_BYTES - 10; /* little-endian u16: what follows */
+    int used = snprintf(header + 10, sizeof header - 10,
+                        "{'descr': '<f4', 'fortran_order': False, 'shape': (%lld, %zu, %zu), }",
+                        (long long)frames, npy->height, npy->width);
+    memset(header + 10 + used, ' ', HEADER_BYTES - 10 - (size_t)used);
+    header[HEADER_BYTES - 1] = '\n';
+    fwrite(header, 1, HEADER_BYTES, npy->stream.out);
+}
+
+static ptie_status npy_create(void **state, const ptie_writer_job *job) {
+    npy_output *npy;
+    *state = NULL;
+    PTIE_TRY(ptie_alloc_status(&npy, 1, sizeof *npy, job->path));
+    ptie_status status = ptie_stream_open(&npy->stream, job->path, job->overwrite);
+    if (status != PTIE_OK) {
+        ptie_free(npy);
+        return status;
+    }
+    npy->width = (size_t)job->info.width_px;
+    npy->height = (size_t)job->info.height_px;
+    write_header(npy, job->info.frames);
+    *state = npy;
+    return PTIE_OK;
+}
+
+static ptie_status npy_append(void *state, const float *frame) {
+    const npy_output *npy = state;
+    ptie_write_floats(npy->stream.out, frame, (uint64_t)npy->width * npy->height);
+    return ptie_stream_check(&npy->stream);
+}
+
+static ptie_status npy_complete(void *state, int64_t frames) {
+    npy_output *npy = state;
+    rewind(npy->stream.out);
+    write_header(npy, frames);
+    ptie_status status = ptie_stream_complete(&npy->stream);
+    ptie_free(npy);
+    return status;
+}
+
+static void npy_discard(void *state) {
+    npy_output *npy = state;
+    ptie_stream_discard(&npy->stream);
+    ptie_free(npy);
+}
+
+const ptie_writer_format ptie_write_npy = {.endings = {".npy"},
+                                           .create = npy_create,
+                                           .append = npy_append,
+                                           .complete = npy_complete,
+                                           .discard = npy_discard};

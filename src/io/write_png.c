@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* 16-bit grey PNG, one file per frame.  Each frame uses the whole range of 16 bits; text chunks say how its
+ * values come back.  All files keep their ".part" names until the last one is complete. */
+#include <errno.h>
+#include <math.h>
+#include <png.h>
+#include <string.h>
+
+#include "base/image.h"
+#include "base/file.h"
+#include "io/array.h"
+#include "io/pattern.h"
+#include "io/png_keys.h"
+#include "io/writer.h"
+
+#define PATH_BYTES 4096
+
+typedef struct png_output {
+    ptie_writer_job job;
+    bool numbered;
+    ptie_pattern pattern;
+    ptie_output_file *files;
+    size_t count, capacity;
+    unsigned char *row; /* big-endian samples */
+} png_output;
+
+/* One pass of libpng over a file. */
+typedef struct encoder {
+    const png_output *output;
+    const float *frame;
+    float offset, scale; /* value = offset + scale * sample */
+    FILE *stream;
+    png_structp png;
+    png_infop info;
+    char message[128];
+} encoder;
+
+static void on_error(png_structp png, png_const_charp message) {
+    encoder *e = png_get_error_ptr(png);
+    snprintf(e->message, sizeof e->message, "%s", message);
+    longjmp(png_jmpbuf(png), 1);
+}
+
+static void on_warning(png_structp png, png_const_charp message) {
+    (void)png, (void)message;
+}
+
+static void write_bytes(png_structp png, png_bytep bytes, size_t count) {
+    if (fwrite(bytes, 1, count, png_get_io_ptr(png)) != count) png_error(png, strerror(errno));
+}
+
+static void flush_nothing(png_structp png) {
+    (void)png; /* closing the stream flushes */
+}
+
+static void png_discard(void *state) {
+    png_output *output = state;
+    for (size_t i = 0; i < output->count; i++) ptie_output_discard(&output->files[i]);
+    ptie_free(output->files);
+    ptie_free(output->row);
+    ptie_free(output);
+}
+
+static ptie_status png_create(void **state, const ptie_writer_job *job) {
+    png_output *output;
+    ptie_pattern pattern = {0};
+    *state = NULL;
+    bool numbered = ptie_pattern_find(&pattern, job->path);
+    if (!numbered && job->info.frames > 1)
+        return PTIE_FAIL(PTIE_EINVAL, "%s: one PNG for %lld frames (expected a pattern such as flow_%%04d.png)",
+                         job->path, (long long)job->info.frames);
+    PTIE_TRY(ptie_alloc_status(&output, 1, sizeof *output, job->path));
+    output->job = *job;
+    output->numbered = numbered;
+    output->pattern = pattern;
+    ptie_status status = ptie_alloc_status(&output->row, (size_t)job->info.width_px, 2, job->path);
+    if (status != PTIE_OK) {
+        png_discard(output);
+        return status;
+    }
+    *state = output;
+    return PTIE_OK;
+}
+
+/* Spreads the frame's values over the 16 bits. */
+static void find_scale(encoder *e, size_t count) {
+    float low = e->frame[0], high = e->frame[0];
+    for (size_t i = 1; i < count; i++) {
+        low = fminf(low, e->frame[i]);
+        high = fmaxf(high, e->frame[i]);
+    }
+    e->offset = low;
+    e->scale = high / 65535 - low / 65535; /* the difference itself might overflow */
+}
+
+static unsigned sample_of(const encoder *e, float value) {
+    const double sample = e->scale > 0 ? ((double)value - (double)e->offset) / (double)e->scale : 0;
+    return (unsigned)lrint(fmin(fmax(sample, 0), 65535));
+}
+
+/* libpng wants key and text writable, and copies both. */
+static void set_note(const encoder *e, const char *key, const char *value) {
+    char key_copy[32], value_copy[64];
+    snprintf(key_copy, sizeof key_copy, "%s", key);
+    snprintf(value_copy, sizeof value_copy, "%s", value);
+    png_text text = {.compression = PNG_TEXT_COMPRESSION_NONE, .key = key_copy, .text = value_copy};
+    png_set_text(e->png, e->info, &text, 1);
+}
+
+static void set_number(const encoder *e, const char *key, double value) {
+    char text[32];
+    snprintf(text, sizeof text, "%.17g", value);
+    set_note(e, key, text);
+}
+
+static void set_notes(const encoder *e) {
+    const ptie_writer_job *job = &e->output->job;
+    set_note(e, PTIE_PNG_NAME, job->name);
+    set_note(e, PTIE_PNG_UNIT, job->info.unit);
+    set_number(e, PTIE_PNG_OFFSET, (double)e->offset);
+    set_number(e, PTIE_PNG_SCALE, (double)e->scale);
+    set_number(e, PTIE_PNG_RATE, job->info.frame_rate_hz);
+    set_number(e, PTIE_PNG_PIXEL, job->info.pixel_m);
+}
+
+static void encode(encoder *e) {
+    const ptie_recording_info *info = &e->output->job.info;
+    const size_t width = (size_t)info->width_px, height = (size_t)info->height_px;
+    png_set_write_fn(e->png, e->stream, write_bytes, flush_nothing);
+    png_set_IHDR(e->png, e->info, (png_uint_32)width, (png_uint_32)height, 16, PNG_COLOR_TYPE_GRAY,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    set_notes(e);
+    png_write_info(e->png, e->info);
+    for (size_t y = 0; y < height; y++) {
+        for (size_t x = 0; x < width; x++) {
+            unsigned sample = sample_of(e, e->frame[y * width + x]);
+            e->output->row[2 * x] = (unsigned char)(sample >> 8);
+            e->output->row[2 * x + 1] = (unsigned char)sample;
+        }
+        png_write_row(e->png, e->output->row);
+    }
+    png_write_end(e->png, NULL);
+}
+
+/* libpng fails by jumping; here the jump ends, and no local variable of a step survives it. */
+static bool guarded(encoder *e, void (*step)(encoder *)) {
+    if (setjmp(png_jmpbuf(e->png))) return false;
+    step(e);
+    return true;
+}
+
+static ptie_status write_stream(encoder *e, const char *path) {
+    e->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, e, on_error, on_warning);
+    if (e->png) e->info = png_create_info_struct(e->png);
+    ptie_status status = e->info ? PTIE_OK : PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
+    if (status == PTIE_OK && !guarded(e, encode))
+        status = PTIE_FAIL(PTIE_EIO, "%s: cannot write: %s", path, e->message);
+    png_destroy_write_struct(&e->png, &e->info);
+    return status;
+}
+
+static ptie_status write_file(encoder *e, const ptie_output_file *file) {
+    PTIE_TRY(ptie_output_stream(file, &e->stream));
+    ptie_status status = write_stream(e, file->path);
+    ptie_status closed = ptie_close_written(e->stream, file->path);
+    return status != PTIE_OK ? status : closed;
+}
+
+static ptie_status file_name(const png_output *output, size_t number, char path[PATH_BYTES]) {
+    if (output->numbered) return ptie_pattern_name(&output->pattern, (int64_t)number, path, PATH_BYTES);
+    if (number > 0)
+        return PTIE_FAIL(PTIE_EINVAL, "%s: one PNG for several frames (expected a pattern such as "
+                         "flow_%%04d.png)", output->job.path);
+    snprintf(path, PATH_BYTES, "%s", output->job.path);
+    return PTIE_OK;
+}
+
+static ptie_status png_append(void *state, const float *frame) {
+    png_output *output = state;
+    char path[PATH_BYTES];
+    const int32_t width = output->job.info.width_px, height = output->job.info.height_px;
+    PTIE_TRY(file_name(output, output->count, path));
+    PTIE_TRY(ptie_image_finite(frame, width, height, path));
+    PTIE_TRY(ptie_array_room(&output->files, output->count, &output->capacity, sizeof *output->files, path));
+    ptie_output_file *file = &output->files[output->count];
+    PTIE_TRY(ptie_output_open(file, path, output->job.overwrite));
+    output->count++;
+    encoder e = {.output = output, .frame = frame};
+    find_scale(&e, (size_t)width * (size_t)height);
+    return write_file(&e, file);
+}
+
+static ptie_status png_complete(void *state, int64_t frames) {
+    (void)frames;
+    png_output *output = state;
+    char path[PATH_BYTES];
+    ptie_status status = PTIE_OK;
+    size_t done = 0;
+    while (done < output->count && status == PTIE_OK) status = ptie_output_commit(&output->files[done++]);
+    for (size_t i = 0; status != PTIE_OK && i + 1 < done; i++)
+        if (file_name(output, i, path) == PTIE_OK) remove(path);
+    png_discard(output);
+    return status;
+}
+
+const ptie_writer_format ptie_write_png = {.endings = {".png"},
+                                           .create = png_create,
+                                           .append = png_append,
+                                           .complete = png_complete,
+                                           .discard = png_discard};

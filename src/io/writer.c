@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Finds the format of an output path and keeps count of its frames. */
+#include "io/writer.h"
+
+#include <string.h>
+#include <strings.h>
+
+#include "base/memory.h"
+#include "io/recording.h"
+
+struct ptie_writer {
+    const ptie_writer_format *format;
+    void *state;
+    ptie_writer_job job;
+    char *path, *name; /* owned; the job points to them */
+    int64_t written;
+    bool failed;
+};
+
+static const ptie_writer_format *find_format(const char *path) {
+    static const ptie_writer_format *const formats[] = {&ptie_write_npy, &ptie_write_png, &ptie_write_tiff,
+                                                        &ptie_write_h5};
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; dot && i < sizeof formats / sizeof *formats; i++)
+        for (const char *const *ending = formats[i]->endings; *ending; ending++)
+            if (strcasecmp(dot, *ending) == 0) return formats[i];
+    return NULL;
+}
+
+static void writer_free(ptie_writer *writer) {
+    ptie_free(writer->path);
+    ptie_free(writer->name);
+    ptie_free(writer);
+}
+
+ptie_status ptie_io_create(ptie_writer **out, const char *path, const char *name,
+                           const ptie_recording_info *info, bool overwrite) {
+    ptie_writer *writer;
+    *out = NULL;
+    const ptie_writer_format *format = find_format(path);
+    if (!format)
+        return PTIE_FAIL(PTIE_EUNSUPPORTED,
+                         "%s: cannot write this kind of file (expected .npy .tif .tiff .h5 .hdf5 or .png)", path);
+    PTIE_TRY(ptie_alloc_status(&writer, 1, sizeof *writer, path));
+    writer->format = format;
+    writer->path = ptie_strdup(path);
+    writer->name = ptie_strdup(name);
+    writer->job = (ptie_writer_job){writer->path, writer->name, *info, overwrite};
+    ptie_status status = writer->path && writer->name ? format->create(&writer->state, &writer->job)
+                                                      : PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
+    if (status != PTIE_OK) {
+        writer_free(writer);
+        return status;
+    }
+    *out = writer;
+    return PTIE_OK;
+}
+
+ptie_status ptie_io_append(ptie_writer *writer, const float *frame) {
+    const int64_t planned = writer->job.info.frames;
+    if (planned > 0 && writer->written == planned)
+        return PTIE_FAIL(PTIE_ESTATE, "%s: too many frames (expected %lld)", writer->path, (long long)planned);
+    ptie_status status = writer->format->append(writer->state, frame);
+    if (status == PTIE_OK)
+        writer->written++;
+    else
+        writer->failed = true;
+    return status;
+}
+
+/* Is there what was announced? */
+static ptie_status check_frames(const ptie_writer *writer) {
+    const int64_t planned = writer->job.info.frames;
+    if (writer->failed)
+        return PTIE_FAIL(PTIE_EIO, "%s: cannot complete the file: a frame could not be written", writer->path);
+    if (writer->written == 0 || (planned > 0 && writer->written < planned))
+        return PTIE_FAIL(PTIE_ESTATE, "%s: too few frames (expected %lld, found %lld)", writer->path,
+                         (long long)(planned > 0 ? planned : 1), (long long)writer->written);
+    return PTIE_OK;
+}
+
+ptie_status ptie_io_complete(ptie_writer *writer) {
+    ptie_status status = check_frames(writer);
+    if (status == PTIE_OK)
+        status = writer->format->complete(writer->state, writer->written);
+    else
+        writer->format->discard(writer->state);
+    writer_free(writer);
+    return status;
+}
+
+void ptie_io_discard(ptie_writer *writer) {
+    if (!writer) return;
+    writer->format->discard(writer->state);
+    writer_free(writer);
+}
