@@ -69,13 +69,20 @@ static ptie_status load_batch(ptie_trainer *t, int32_t *count) {
     return ptie_pool_run(t->engine->pool, (size_t)*count, load_sample, t);
 }
 
-static ptie_status expect_finite(double loss, const ptie_trainer *t, const char *what) {
-    if (isfinite(loss)) return PTIE_OK;
-    return PTIE_FAIL(
-        PTIE_ENUMERIC,
-        "training: %s is not finite at step %llu (expected a number, found %g; try a smaller "
-        "learning rate)",
-        what, (unsigned long long)t->step + 1, loss);
+static ptie_status expect_finite(double value, const ptie_trainer *t, const char *what) {
+    if (isfinite(value)) return PTIE_OK;
+    return PTIE_FAIL(PTIE_ENUMERIC,
+                     "training: %s is not finite at step %llu (expected a number, found %g; try a "
+                     "smaller learning rate)",
+                     what, (unsigned long long)t->step + 1, value);
+}
+
+/* ReLU turns NaN into 0, so a broken network can still have a loss. */
+static ptie_status expect_finite_weights(const ptie_trainer *t) {
+    const float *values = t->model->values;
+    for (size_t i = 0; i < t->model->graph.values; i++)
+        PTIE_TRY(expect_finite((double)values[i], t, "a weight"));
+    return PTIE_OK;
 }
 
 static ptie_status optimise(ptie_trainer *t, int32_t count) {
@@ -88,6 +95,7 @@ static ptie_status optimise(ptie_trainer *t, int32_t count) {
     PTIE_TRY(ptie_stepper_gradients(t->stepper, count, p->seed, t->step + 1, t->parts));
     for (int32_t i = 0; i < count; i++) PTIE_TRY(expect_finite(t->parts[i].loss, t, "the loss"));
     ptie_stepper_update(t->stepper, &adamw, t->step + 1);
+    PTIE_TRY(expect_finite_weights(t));
     for (int32_t i = 0; i < count; i++) ptie_add_scores(&t->sums, &t->parts[i]);
     t->step++;
     return PTIE_OK;
