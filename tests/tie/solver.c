@@ -21,23 +21,6 @@ static void solve_undoes_forward(void **state) {
         }
 }
 
-/* Rounding is noise of the images, and amplified as such: 3e-8 of the light, and of the signal what
-   two transforms leave, 4e-7 if it were white (tests/fft); regular images have it in their own few
-   modes: measured 8e-7, allowed 1.5e-6. */
-static double rounding_rad(const ptie_solver_params *params, const float *plus,
-                           const float *minus) {
-    const int32_t count = params->width_px * params->height_px;
-    double squares = 0;
-    for (int32_t i = 0; i < count; i++) squares += pow((double)plus[i] - (double)minus[i], 2);
-    ptie_solver *solver;
-    assert_ok(ptie_tie_plan(&solver, params));
-    /* (I+ - I-) / 2 has sigma / sqrt 2. */
-    const double sigma = sqrt(2) * (3e-8 + 1.5e-6 * sqrt(squares / (4 * count)));
-    const double rounding = ptie_tie_noise_rad(solver, PTIE_PLANES_PAIR, sigma);
-    ptie_solver_free(solver);
-    return rounding;
-}
-
 /* Not band-limited: the Laplacians of both sides agree up to Nyquist; only the mean is lost. */
 static void solve_undoes_forward_on_sharp_edges(void **state) {
     (void)state;
