@@ -143,7 +143,7 @@ static void h5py_reads_the_file(void **state) {
         "clean, noisy = f['clean'][:], f['noisy'][:]\n"
         "assert clean.min() == 0 and clean.max() == 1 and noisy.min() == 0 and noisy.max() == 1\n"
         "sigma = f['sigma'][:]\n"
-        "assert 0.02 <= sigma.min() < sigma.max() <= 0.12\n"
+        "assert 0.008 <= sigma.min() < sigma.max() <= 0.08\n"
         "rad = f['noisy_offset_rad'][:] + f['noisy_scale_rad'][:] * noisy.mean((1, 2), "
         "dtype=float)\n"
         "assert abs(rad).max() < 1e-6, abs(rad).max() # zero mean, rounded\n";
