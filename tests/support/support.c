@@ -6,6 +6,17 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+/* Takes the place of cmocka's: version 1.1.5 reports a skipped case as "not ok", which counts as a failure. */
+void print_message(const char *const format, ...) {
+    static const char wrong[] = "not ok %u # SKIP";
+    const bool skipped = strncmp(format, wrong, sizeof wrong - 1) == 0;
+    va_list arguments;
+    va_start(arguments, format);
+    vprintf(skipped ? format + strlen("not ") : format, arguments);
+    va_end(arguments);
+    fflush(stdout);
+}
+
 void support_assert_ok(ptie_status status, const char *call, const char *file, int line) {
     if (status == PTIE_OK) return;
     print_error("%s:%d: %s\n    expected ok, found %s: %s\n", file, line, call, ptie_status_name(status),
