@@ -28,7 +28,7 @@ typedef struct png_output {
 typedef struct encoder {
     const png_output *output;
     const float *frame;
-    float offset, scale; /* value = offset + scale * sample */
+    double offset, scale; /* value = offset + scale * sample */
     FILE *stream;
     png_structp png;
     png_infop info;
@@ -89,12 +89,12 @@ static void find_scale(encoder *e, size_t count) {
         low = fminf(low, e->frame[i]);
         high = fmaxf(high, e->frame[i]);
     }
-    e->offset = low;
-    e->scale = high / 65535 - low / 65535; /* the difference itself might overflow */
+    e->offset = (double)low;
+    e->scale = ((double)high - (double)low) / 65535;
 }
 
 static unsigned sample_of(const encoder *e, float value) {
-    const double sample = e->scale > 0 ? ((double)value - (double)e->offset) / (double)e->scale : 0;
+    const double sample = e->scale > 0 ? ((double)value - e->offset) / e->scale : 0;
     return (unsigned)lrint(fmin(fmax(sample, 0), 65535));
 }
 
@@ -117,8 +117,8 @@ static void set_notes(const encoder *e) {
     const ptie_writer_job *job = &e->output->job;
     set_note(e, PTIE_PNG_NAME, job->name);
     set_note(e, PTIE_PNG_UNIT, job->info.unit);
-    set_number(e, PTIE_PNG_OFFSET, (double)e->offset);
-    set_number(e, PTIE_PNG_SCALE, (double)e->scale);
+    set_number(e, PTIE_PNG_OFFSET, e->offset);
+    set_number(e, PTIE_PNG_SCALE, e->scale);
     set_number(e, PTIE_PNG_RATE, job->info.frame_rate_hz);
     set_number(e, PTIE_PNG_PIXEL, job->info.pixel_m);
 }
