@@ -1,0 +1,386 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Every kernel of every level this machine runs against its scalar twin: all widths from one pixel to past three
+ * blocks, channel counts with every tail, odd strides, unaligned rows.  Nothing outside the interior may change.
+ *
+ * Two sums of the same n products in different orders differ by at most 2 gamma_n sum |a b| (Higham, Accuracy and
+ * Stability, 3.1); sum |a b| is what the scalar twin makes of the magnitudes.
+ */
+#include "kernel/block.h"
+
+enum { WIDEST = 3 * 32 + 1 }; /* the widest block is 2 vectors of 16 */
+
+static const int32_t channel_counts[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 16, 24, 32, 48};
+enum { CHANNEL_COUNTS = sizeof channel_counts / sizeof *channel_counts };
+
+/* One case: sizes, the kernel under test, its twin, random numbers. */
+typedef struct twin {
+    const ptie_kernels *kernels, *scalar;
+    int32_t in_channels, out_channels, height, width;
+    ptie_random random;
+} twin;
+
+static double uniform(twin *t, double low, double high) {
+    return ptie_random_uniform(&t->random, low, high);
+}
+
+/* Interior: |found - expected| <= factor * magnitude + extra; elsewhere the same bits.  magnitude NULL: 0. */
+static void compare(const twin *t, const block *found, const block *expected, const block *magnitude,
+                    double factor, const double *extra, const char *kernel) {
+    const ptie_map *map = &found->map;
+    bool *inside = calloc(found->floats, sizeof *inside);
+    size_t pixel = 0;
+    for (int32_t c = 0; c < map->channels; c++)
+        for (int32_t y = 0; y < map->height; y++)
+            for (int32_t x = 0; x < map->width; x++, pixel++) {
+                inside[block_pixel(found, c, y, x) - found->memory] = true;
+                double difference =
+                    fabs((double)*block_pixel(found, c, y, x) - (double)*block_pixel(expected, c, y, x));
+                double bound = (magnitude ? factor * (double)*block_pixel(magnitude, c, y, x) : 0) +
+                               (extra ? extra[pixel] : 0);
+                if (!(difference <= bound))
+                    fail_msg("%s: %d -> %d channels, %d x %d, at (%d, %d, %d): off by %g, bound %g", kernel,
+                             t->in_channels, t->out_channels, t->width, t->height, c, y, x, difference,
+                             bound);
+            }
+    for (size_t i = 0; i < found->floats; i++)
+        if (!inside[i] && memcmp(&found->memory[i], &expected->memory[i], sizeof(float)) != 0)
+            fail_msg("%s: %d -> %d channels, %d x %d: wrote outside, %zu floats into the block", kernel,
+                     t->in_channels, t->out_channels, t->width, t->height, i);
+    free(inside);
+}
+
+static void compare_sums(const twin *t, const double *found, const double *expected,
+                         const double *magnitude, double factor, size_t count, const char *kernel) {
+    for (size_t i = 0; i < count; i++)
+        if (!(fabs(found[i] - expected[i]) <= factor * magnitude[i]))
+            fail_msg("%s: %d -> %d channels, %d x %d, sum %zu: found %.9g, expected %.9g, bound %g", kernel,
+                     t->in_channels, t->out_channels, t->width, t->height, i, found[i], expected[i],
+                     factor * magnitude[i]);
+}
+
+static float *make_floats(twin *t, size_t count) {
+    float *values = malloc(count * sizeof *values);
+    for (size_t i = 0; i < count; i++) values[i] = (float)uniform(t, -1, 1);
+    return values;
+}
+
+static float *magnitudes(const float *values, size_t count) {
+    float *result = malloc(count * sizeof *result);
+    for (size_t i = 0; i < count; i++) result[i] = fabsf(values[i]);
+    return result;
+}
+
+/* Rounds to eighths, so that equal neighbours occur. */
+static void make_ties(block *b) {
+    for (size_t i = 0; i < b->floats; i++) b->memory[i] = roundf(b->memory[i] * 8) / 8;
+}
+
+static void test_conv3x3(twin *t) {
+    const size_t weight_count = (size_t)t->out_channels * (size_t)t->in_channels * 9;
+    const size_t packed_count = ptie_conv3x3_packed(t->out_channels, t->in_channels);
+    block in = block_make(t->in_channels, t->height, t->width, &t->random), in_abs = block_absolute(&in);
+    block found = block_make(t->out_channels, t->height, t->width, &t->random);
+    block expected = block_copy(&found), magnitude = block_copy(&found);
+    float *weights = make_floats(t, weight_count), *bias = make_floats(t, (size_t)t->out_channels);
+    float *packed = malloc(packed_count * sizeof *packed);
+    ptie_conv3x3_pack(packed, weights, t->out_channels, t->in_channels, NULL);
+    float *packed_abs = magnitudes(packed, packed_count), *bias_abs = magnitudes(bias, (size_t)t->out_channels);
+    t->scalar->conv3x3(&magnitude.map, &in_abs.map, packed_abs, bias_abs, false);
+    for (int variant = 0; variant < 3; variant++) { /* bare; with bias; with bias and ReLU */
+        const float *used = variant ? bias : NULL;
+        t->kernels->conv3x3(&found.map, &in.map, packed, used, variant == 2);
+        t->scalar->conv3x3(&expected.map, &in.map, packed, used, variant == 2);
+        compare(t, &found, &expected, &magnitude, 2 * gamma_n(9 * t->in_channels + 1), NULL, "conv3x3");
+    }
+    block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected), block_free(&magnitude);
+    free(weights), free(bias), free(packed), free(packed_abs), free(bias_abs);
+}
+
+/* Products summed by one lane of a vector, and the lanes: at least 8 of them. */
+static double lane_terms(const twin *t, int32_t rows) {
+    return rows * ((t->width + 7) / 8) + 6;
+}
+
+static void test_conv3x3_weights(twin *t) {
+    const size_t count = (size_t)t->out_channels * (size_t)t->in_channels * 9;
+    block in = block_make(t->in_channels, t->height, t->width, &t->random), in_abs = block_absolute(&in);
+    block g = block_make(t->out_channels, t->height, t->width, &t->random), g_abs = block_absolute(&g);
+    double *sums = calloc(3 * count, sizeof *sums);
+    for (size_t i = 0; i < count; i++) sums[i] = sums[count + i] = 0.5; /* it adds */
+    t->kernels->conv3x3_weights(sums, &g.map, &in.map);
+    t->scalar->conv3x3_weights(sums + count, &g.map, &in.map);
+    t->scalar->conv3x3_weights(sums + 2 * count, &g_abs.map, &in_abs.map);
+    compare_sums(t, sums, sums + count, sums + 2 * count, gamma_n(lane_terms(t, t->height)), count,
+                 "conv3x3_weights");
+    block_free(&in), block_free(&in_abs), block_free(&g), block_free(&g_abs);
+    free(sums);
+}
+
+static void test_conv1x1(twin *t) {
+    const size_t count = (size_t)t->out_channels * (size_t)t->in_channels;
+    block in = block_make(t->in_channels, t->height, t->width, &t->random), in_abs = block_absolute(&in);
+    block found = block_make(t->out_channels, t->height, t->width, &t->random);
+    block expected = block_copy(&found), magnitude = block_copy(&found);
+    float *weights = make_floats(t, count), *bias = make_floats(t, (size_t)t->out_channels);
+    float *weights_abs = magnitudes(weights, count), *bias_abs = magnitudes(bias, (size_t)t->out_channels);
+    t->scalar->conv1x1(&magnitude.map, &in_abs.map, weights_abs, bias_abs);
+    for (int with_bias = 0; with_bias < 2; with_bias++) {
+        t->kernels->conv1x1(&found.map, &in.map, weights, with_bias ? bias : NULL);
+        t->scalar->conv1x1(&expected.map, &in.map, weights, with_bias ? bias : NULL);
+        compare(t, &found, &expected, &magnitude, 2 * gamma_n(t->in_channels + 1), NULL, "conv1x1");
+    }
+    block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected), block_free(&magnitude);
+    free(weights), free(bias), free(weights_abs), free(bias_abs);
+}
+
+static void test_conv1x1_weights(twin *t) {
+    const size_t weights = (size_t)t->out_channels * (size_t)t->in_channels;
+    const size_t count = weights + (size_t)t->out_channels; /* the biases follow */
+    block in = block_make(t->in_channels, t->height, t->width, &t->random), in_abs = block_absolute(&in);
+    block g = block_make(t->out_channels, t->height, t->width, &t->random), g_abs = block_absolute(&g);
+    double *sums = calloc(3 * count, sizeof *sums);
+    for (size_t i = 0; i < count; i++) sums[i] = sums[count + i] = 0.5;
+    t->kernels->conv1x1_weights(sums, sums + weights, &g.map, &in.map);
+    t->scalar->conv1x1_weights(sums + count, sums + count + weights, &g.map, &in.map);
+    t->scalar->conv1x1_weights(sums + 2 * count, sums + 2 * count + weights, &g_abs.map, &in_abs.map);
+    compare_sums(t, sums, sums + count, sums + 2 * count, gamma_n(lane_terms(t, 1)), count,
+                 "conv1x1_weights");
+    block_free(&in), block_free(&in_abs), block_free(&g), block_free(&g_abs);
+    free(sums);
+}
+
+static void test_moments(twin *t) {
+    const size_t count = 2 * (size_t)t->out_channels;
+    block z = block_make(t->out_channels, t->height, t->width, &t->random), z_abs = block_absolute(&z);
+    double *sums = calloc(3 * count, sizeof *sums);
+    for (size_t i = 0; i < count; i++) sums[i] = sums[count + i] = 0.5;
+    t->kernels->moments(sums, &z.map);
+    t->scalar->moments(sums + count, &z.map);
+    t->scalar->moments(sums + 2 * count, &z_abs.map);
+    compare_sums(t, sums, sums + count, sums + 2 * count, gamma_n(lane_terms(t, 1)), count, "moments");
+    block_free(&z), block_free(&z_abs);
+    free(sums);
+}
+
+static ptie_norm *make_norms(twin *t) {
+    ptie_norm *norms = malloc((size_t)t->out_channels * sizeof *norms);
+    for (int32_t c = 0; c < t->out_channels; c++)
+        norms[c] = (ptie_norm){.scale = (float)uniform(t, -2, 2),
+                               .shift = (float)uniform(t, -1, 1),
+                               .mean = (float)uniform(t, -0.5, 0.5),
+                               .inverse_std = (float)uniform(t, 0.5, 2),
+                               .mean_g = (float)uniform(t, -0.1, 0.1),
+                               .mean_gx = (float)uniform(t, -0.1, 0.1)};
+    return norms;
+}
+
+/* Rounding of scale * z + shift; where the value itself is smaller, the ReLU may be open or shut. */
+static double normalise_rounding(const ptie_norm *norm, double z) {
+    return gamma_n(3) * (fabs((double)norm->scale * z) + fabs((double)norm->shift));
+}
+
+static bool undecided(const ptie_norm *norm, double z) {
+    return fabs((double)norm->scale * z + (double)norm->shift) <= normalise_rounding(norm, z);
+}
+
+static void test_normalise(twin *t) {
+    block z = block_make(t->out_channels, t->height, t->width, &t->random);
+    block found = block_make(t->out_channels, t->height, t->width, &t->random), expected = block_copy(&found);
+    ptie_norm *norms = make_norms(t);
+    double *bound = malloc((size_t)(t->out_channels * t->height * t->width) * sizeof *bound);
+    size_t pixel = 0;
+    for (int32_t c = 0; c < t->out_channels; c++)
+        for (int32_t y = 0; y < t->height; y++)
+            for (int32_t x = 0; x < t->width; x++)
+                bound[pixel++] = normalise_rounding(&norms[c], (double)*block_pixel(&z, c, y, x));
+    t->kernels->normalise(&found.map, &z.map, norms);
+    t->scalar->normalise(&expected.map, &z.map, norms);
+    compare(t, &found, &expected, NULL, 0, bound, "normalise");
+    block_free(&z), block_free(&found), block_free(&expected);
+    free(norms), free(bound);
+}
+
+static void test_normalise_sums(twin *t) {
+    const size_t count = 2 * (size_t)t->out_channels;
+    block z = block_make(t->out_channels, t->height, t->width, &t->random);
+    block g = block_make(t->out_channels, t->height, t->width, &t->random);
+    ptie_norm *norms = make_norms(t);
+    double *sums = calloc(3 * count, sizeof *sums), *bound = sums + 2 * count;
+    const double factor = gamma_n(lane_terms(t, 1) + 3);
+    for (int32_t c = 0; c < t->out_channels; c++)
+        for (int32_t y = 0; y < t->height; y++)
+            for (int32_t x = 0; x < t->width; x++) {
+                double value = (double)*block_pixel(&z, c, y, x);
+                double xhat = (value - (double)norms[c].mean) * (double)norms[c].inverse_std;
+                double weight = fabs((double)*block_pixel(&g, c, y, x)) *
+                                (undecided(&norms[c], value) ? 1 : factor);
+                bound[2 * c] += weight;
+                bound[2 * c + 1] += weight * fabs(xhat);
+            }
+    t->kernels->normalise_sums(sums, &g.map, &z.map, norms);
+    t->scalar->normalise_sums(sums + count, &g.map, &z.map, norms);
+    compare_sums(t, sums, sums + count, bound, 1, count, "normalise_sums");
+    block_free(&z), block_free(&g);
+    free(norms), free(sums);
+}
+
+static void test_normalise_backward(twin *t) {
+    block z = block_make(t->out_channels, t->height, t->width, &t->random);
+    block found = block_make(t->out_channels, t->height, t->width, &t->random), expected = block_copy(&found);
+    ptie_norm *norms = make_norms(t);
+    double *bound = malloc((size_t)(t->out_channels * t->height * t->width) * sizeof *bound);
+    size_t pixel = 0;
+    for (int32_t c = 0; c < t->out_channels; c++)
+        for (int32_t y = 0; y < t->height; y++)
+            for (int32_t x = 0; x < t->width; x++) {
+                const ptie_norm *n = &norms[c];
+                double value = (double)*block_pixel(&z, c, y, x), g = (double)*block_pixel(&found, c, y, x);
+                double xhat = (value - (double)n->mean) * (double)n->inverse_std;
+                double size = fabs(g) + fabs((double)n->mean_g) + fabs(xhat * (double)n->mean_gx);
+                bound[pixel++] = fabs((double)n->scale) *
+                                 (gamma_n(6) * size + (undecided(n, value) ? fabs(g) : 0));
+            }
+    t->kernels->normalise_backward(&found.map, &z.map, norms);
+    t->scalar->normalise_backward(&expected.map, &z.map, norms);
+    compare(t, &found, &expected, NULL, 0, bound, "normalise_backward");
+    block_free(&z), block_free(&found), block_free(&expected);
+    free(norms), free(bound);
+}
+
+static void test_maxpool(twin *t) {
+    block in = block_make(t->out_channels, 2 * t->height, 2 * t->width, &t->random);
+    block found = block_make(t->out_channels, t->height, t->width, &t->random), expected = block_copy(&found);
+    make_ties(&in);
+    t->kernels->maxpool(&found.map, &in.map);
+    t->scalar->maxpool(&expected.map, &in.map);
+    compare(t, &found, &expected, NULL, 0, NULL, "maxpool");
+    block_free(&in), block_free(&found), block_free(&expected);
+}
+
+static void test_maxpool_backward(twin *t) {
+    block in = block_make(t->out_channels, 2 * t->height, 2 * t->width, &t->random);
+    block out = block_make(t->out_channels, t->height, t->width, &t->random);
+    block g = block_make(t->out_channels, t->height, t->width, &t->random);
+    block found = block_make(t->out_channels, 2 * t->height, 2 * t->width, &t->random);
+    block expected = block_copy(&found);
+    make_ties(&in);
+    t->scalar->maxpool(&out.map, &in.map);
+    t->kernels->maxpool_backward(&found.map, &g.map, &in.map, &out.map);
+    t->scalar->maxpool_backward(&expected.map, &g.map, &in.map, &out.map);
+    compare(t, &found, &expected, NULL, 0, NULL, "maxpool_backward");
+    block_free(&in), block_free(&out), block_free(&g), block_free(&found), block_free(&expected);
+}
+
+static void test_upsample(twin *t) {
+    block in = block_make(t->out_channels, t->height, t->width, &t->random), in_abs = block_absolute(&in);
+    block found = block_make(t->out_channels, 2 * t->height, 2 * t->width, &t->random);
+    block expected = block_copy(&found), magnitude = block_copy(&found);
+    t->kernels->upsample(&found.map, &in.map);
+    t->scalar->upsample(&expected.map, &in.map);
+    t->scalar->upsample(&magnitude.map, &in_abs.map);
+    compare(t, &found, &expected, &magnitude, 2 * gamma_n(4), NULL, "upsample");
+    block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected), block_free(&magnitude);
+}
+
+static void test_upsample_backward(twin *t) {
+    block g = block_make(t->out_channels, 2 * t->height, 2 * t->width, &t->random);
+    block_clear_halo(&g); /* the kernel relies on it */
+    block g_abs = block_absolute(&g);
+    block found = block_make(t->out_channels, t->height, t->width, &t->random);
+    block expected = block_copy(&found), magnitude = block_copy(&found);
+    t->kernels->upsample_backward(&found.map, &g.map);
+    t->scalar->upsample_backward(&expected.map, &g.map);
+    t->scalar->upsample_backward(&magnitude.map, &g_abs.map);
+    compare(t, &found, &expected, &magnitude, 2 * gamma_n(17), NULL, "upsample_backward");
+    block_free(&g), block_free(&g_abs), block_free(&found), block_free(&expected), block_free(&magnitude);
+}
+
+/* 1 / (1 + e): an error r of e changes the result by at most r / 4; e is good to 8 roundings in each twin, and
+   the sum and the quotient round once more. */
+static void test_sigmoid(twin *t) {
+    block in = block_make(t->out_channels, t->height, t->width, &t->random);
+    block found = block_make(t->out_channels, t->height, t->width, &t->random), expected = block_copy(&found);
+    block ones = block_copy(&found);
+    for (size_t i = 0; i < in.floats; i++) in.memory[i] *= i % 50 == 0 ? 200 : 12;
+    for (size_t i = 0; i < ones.floats; i++) ones.memory[i] = 1;
+    t->kernels->sigmoid(&found.map, &in.map);
+    t->scalar->sigmoid(&expected.map, &in.map);
+    compare(t, &found, &expected, &ones, gamma_n(2 * 8 / 4.0 + 2 * 2), NULL, "sigmoid");
+    block_free(&in), block_free(&found), block_free(&expected), block_free(&ones);
+}
+
+/* Contiguous images in a block with one channel. */
+static block make_image(twin *t, int32_t height, int32_t width) {
+    block b = block_make(1, height, width, &t->random);
+    b.map.row = width; /* what lies behind the last row stays watched */
+    return b;
+}
+
+static void check_window(twin *t, bool adjoint) {
+    const int32_t margin = PTIE_SSIM_WINDOW - 1, width = t->width + margin, height = t->height + margin;
+    block small = make_image(t, t->height, t->width), large = make_image(t, height, width);
+    block in = adjoint ? small : large, found = adjoint ? large : small;
+    block expected = block_copy(&found), magnitude = block_copy(&found), in_abs = block_absolute(&in);
+    float *row = malloc((size_t)(width + 64) * sizeof *row), taps[PTIE_SSIM_WINDOW];
+    for (int i = 0; i <= PTIE_SSIM_WINDOW / 2; i++)
+        taps[i] = taps[PTIE_SSIM_WINDOW - 1 - i] = (float)uniform(t, 0, 1);
+    const ptie_kernels *tables[3] = {t->kernels, t->scalar, t->scalar};
+    const block *outs[3] = {&found, &expected, &magnitude}, *ins[3] = {&in, &in, &in_abs};
+    for (int i = 0; i < 3; i++)
+        (adjoint ? tables[i]->window_adjoint : tables[i]->window)(outs[i]->map.data, ins[i]->map.data, width,
+                                                                  height, taps, row);
+    compare(t, &found, &expected, &magnitude, 2 * gamma_n(2 * PTIE_SSIM_WINDOW), NULL,
+            adjoint ? "window_adjoint" : "window");
+    block_free(&small), block_free(&large), block_free(&expected), block_free(&magnitude);
+    block_free(&in_abs);
+    free(row);
+}
+
+static void test_window(twin *t) {
+    check_window(t, false);
+}
+
+static void test_window_adjoint(twin *t) {
+    check_window(t, true);
+}
+
+/* All widths, with channels and heights that go round; then all channel counts. */
+static void run_cases(void (*test)(twin *)) {
+    if (ptie_cpu_detect() == PTIE_CPU_SCALAR) skip();
+    for (int level = 1; level <= (int)ptie_cpu_detect(); level++) {
+        twin t = {.kernels = ptie_kernels_of((ptie_cpu_level)level),
+                  .scalar = ptie_kernels_of(PTIE_CPU_SCALAR)};
+        ptie_random_init(&t.random, 11, PTIE_STREAM_WEIGHTS, (uint64_t)level);
+        for (t.width = 1; t.width <= WIDEST; t.width++) {
+            t.in_channels = channel_counts[t.width % 9];
+            t.out_channels = channel_counts[t.width / 3 % 10];
+            t.height = 1 + t.width % 4;
+            test(&t);
+        }
+        for (int32_t i = 0; i < CHANNEL_COUNTS * CHANNEL_COUNTS; i++) {
+            static const int32_t widths[] = {5, 16, 37, 48};
+            t.in_channels = channel_counts[i % CHANNEL_COUNTS];
+            t.out_channels = channel_counts[i / CHANNEL_COUNTS];
+            t.width = widths[i % 4];
+            t.height = 1 + i % 5;
+            test(&t);
+        }
+    }
+}
+
+#define PTIE_KERNEL(name, parameters)                                                              \
+    static void name##_equals_its_twin(void **state) {                                             \
+        (void)state;                                                                               \
+        run_cases(test_##name);                                                                    \
+    }
+#include "kernel/kernels.inc"
+#undef PTIE_KERNEL
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+#define PTIE_KERNEL(name, parameters) cmocka_unit_test(name##_equals_its_twin),
+#include "kernel/kernels.inc"
+#undef PTIE_KERNEL
+    };
+    return cmocka_run_group_tests_name("twins", tests, NULL, NULL);
+}
