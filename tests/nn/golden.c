@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The network, its gradients, the loss and the optimiser against PyTorch in double precision
- * (tests/golden/make_network.py), at every kernel level of this machine.
- *
- * Bounds: single precision loses about 1e-7 per operation; through 23 layers and a batch of 2 the worst tensors
- * were measured and stand beside each bound.
+ * (tests/golden/make_network.py), at every kernel level of this machine.  Beside each bound stands the worst
+ * relative or absolute error measured over the levels; the margin is five- to sevenfold.
  */
 #include "support/support.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "nn/adamw.h"
 #include "nn/loss.h"
@@ -65,8 +62,8 @@ static void check_inference(golden *g) {
     void *scratch = ptie_scratch_alloc(ptie_nn_denoiser_scratch(denoiser));
     for (int32_t n = 0; n < BATCH; n++) {
         assert_ok(ptie_nn_denoise(denoiser, clean, tensor(g, "noisy") + n * PIXELS, scratch));
-        /* Measured 1.1e-7. */
-        assert_near(support_relative_error(clean, tensor(g, "inference") + n * PIXELS, PIXELS), 0, 1e-6);
+        /* Measured 3.3e-7. */
+        assert_near(support_relative_error(clean, tensor(g, "inference") + n * PIXELS, PIXELS), 0, 2e-6);
     }
     ptie_scratch_free(scratch);
     ptie_nn_denoiser_free(denoiser);
@@ -83,7 +80,7 @@ static void check_first_step(golden *g) {
     for (int32_t n = 0; n < BATCH; n++) {
         const float *expected = tensor(g, "parts") + 5 * n;
         const double found[5] = {parts[n].loss, parts[n].l1, parts[n].ssim, parts[n].wmse, parts[n].mse};
-        for (int i = 0; i < 5; i++) assert_near(found[i], (double)expected[i], 1e-6); /* measured 2e-7 */
+        for (int i = 0; i < 5; i++) assert_near(found[i], (double)expected[i], 5e-7); /* measured 9e-8 */
     }
     const ptie_graph *graph = &g->model->graph;
     for (int32_t i = 0; i < graph->param_count; i++) {
@@ -94,9 +91,8 @@ static void check_first_step(golden *g) {
         const float *found = param->trainable ? ptie_stepper_state(g->stepper, 0, param->name, &count)
                                               : g->model->values + param->offset;
         double error = support_relative_error(found, tensor(g, name), count);
-        if (getenv("PTIE_TEST_VERBOSE")) print_message("%s %.2g\n", name, error);
-        /* The requirement.  Measured 1.3e-5 at worst. */
-        if (!(error <= 1e-4)) fail_msg("%s: relative error %g", name, error);
+        /* Required 1e-4; measured 2e-6 at worst. */
+        if (!(error <= 1e-5)) fail_msg("%s: relative error %g", name, error);
     }
 }
 
@@ -113,7 +109,7 @@ static void check_ten_steps(golden *g) {
         ptie_stepper_update(g->stepper, &adamw, step);
         double loss = (parts[0].loss + parts[1].loss) / 2;
         double expected = (double)tensor(g, "step_losses")[step - 1];
-        assert_near(loss, expected, 1e-4 * expected); /* the requirement; measured 3e-6 */
+        assert_near(loss, expected, 2e-6 * expected); /* required 1e-4, measured 3e-7 */
     }
 }
 
@@ -132,8 +128,9 @@ static void check_ssim(golden *g) {
         /* The loss has 1 - SSIM: scale -1 gives the gradient of SSIM. */
         ptie_loss_evaluate(g->engine.kernels, &parts, gradient, tensor(g, "noisy") + offset,
                            tensor(g, "clean") + offset, WIDTH, HEIGHT, only_ssim, -1, scratch);
-        assert_near(parts.ssim, (double)tensor(g, "ssim")[n], 1e-6);
-        assert_near(support_relative_error(gradient, tensor(g, "ssim_gradient") + offset, PIXELS), 0, 1e-5);
+        assert_near(parts.ssim, (double)tensor(g, "ssim")[n], 3e-7); /* measured 6e-8 */
+        assert_near(support_relative_error(gradient, tensor(g, "ssim_gradient") + offset, PIXELS), 0,
+                    5e-6); /* measured 9e-7 */
     }
     ptie_scratch_free(scratch);
 }
@@ -151,7 +148,8 @@ static void check_adamw(golden *g) {
     for (uint64_t step = 1; step <= STEPS; step++)
         ptie_adamw_apply(values, first, second, tensor(g, "adamw_gradients") + COUNT * (step - 1), COUNT,
                          &adamw, step);
-    /* A step moves a value by about the learning rate; each is rounded a few times: 10 * 2^-24 * |v|. */
+    /* A step moves a value by about the learning rate; each is rounded a few times: 10 * 2^-24 * |v|.  Measured
+       1.2e-7 in place of 6e-7. */
     for (int i = 0; i < COUNT; i++)
         assert_near((double)values[i], (double)tensor(g, "adamw_end")[i],
                     6e-7 * (fabs((double)values[i]) + 0.03));
