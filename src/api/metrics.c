@@ -22,26 +22,10 @@ ptie_status ptie_compare(ptie_comparison *out, const float *estimate, const floa
     return ptie_metrics_compare(out, estimate, truth, width_px, height_px, range);
 }
 
-/* Written so that no sum of the caller's numbers overflows. */
-static ptie_status check_rect(ptie_rect r, int32_t width, int32_t height, const char *name) {
-    const bool inside = r.x_px >= 0 && r.y_px >= 0 && r.width_px > 0 && r.height_px > 0 &&
-                        r.width_px <= width && r.x_px <= width - r.width_px &&
-                        r.height_px <= height && r.y_px <= height - r.height_px;
-    if (inside) return PTIE_OK;
-    return PTIE_FAIL(
-        PTIE_EINVAL,
-        "ptie_regions_from_rects: %s leaves the image or is empty (expected within %d x %d, "
-        "found %d x %d at x=%d, y=%d)",
-        name, width, height, r.width_px, r.height_px, r.x_px, r.y_px);
-}
-
 ptie_status ptie_regions_from_rects(uint8_t *labels, int32_t width_px, int32_t height_px,
                                     ptie_rect jet, ptie_rect background) {
     PTIE_TRY(check_image(labels, "labels", width_px, height_px, "ptie_regions_from_rects"));
-    PTIE_TRY(check_rect(jet, width_px, height_px, "jet"));
-    PTIE_TRY(check_rect(background, width_px, height_px, "background"));
-    ptie_metrics_label_rects(labels, width_px, height_px, jet, background);
-    return PTIE_OK;
+    return ptie_metrics_label_rects(labels, width_px, height_px, jet, background);
 }
 
 ptie_status ptie_regions_propose(uint8_t *labels, const float *map, int32_t width_px,

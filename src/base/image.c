@@ -2,6 +2,7 @@
 #include "base/image.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Integer arithmetic, so that the loop vectorises under strict floating point. */
@@ -24,4 +25,24 @@ ptie_status ptie_image_finite(const float *image, int32_t width, int32_t height,
     return PTIE_FAIL(PTIE_ENUMERIC,
                      "%s: value is not finite (at x=%zu, y=%zu; expected a number, found %g)", what,
                      i % w, i / w, (double)image[i]);
+}
+
+static int ascending(const void *a, const void *b) {
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+double ptie_image_border_median(const float *image, int32_t width, int32_t height, float *border) {
+    const size_t w = (size_t)width, h = (size_t)height;
+    size_t count = 0;
+    for (size_t x = 0; x < w; x++) {
+        border[count++] = image[x];
+        border[count++] = image[(h - 1) * w + x];
+    }
+    for (size_t y = 0; y < h; y++) {
+        border[count++] = image[y * w];
+        border[count++] = image[y * w + w - 1];
+    }
+    qsort(border, count, sizeof *border, ascending);
+    return ((double)border[count / 2 - 1] + (double)border[count / 2]) / 2;
 }

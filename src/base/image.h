@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Checks that images pass before anything is computed from them. */
+/* What any layer may ask of an image. */
 #ifndef PTIE_BASE_IMAGE_H
 #define PTIE_BASE_IMAGE_H
 
@@ -7,5 +7,9 @@
 
 /* PTIE_ENUMERIC naming `what` ("i_plus") and the first pixel that is NaN or infinite. */
 ptie_status ptie_image_finite(const float *image, int32_t width, int32_t height, const char *what);
+
+/* Median of the outermost rows and columns: the level around a flow, because most of a frame's border is
+   outside it.  border: scratch for 2 (width + height) values. */
+double ptie_image_border_median(const float *image, int32_t width, int32_t height, float *border);
 
 #endif

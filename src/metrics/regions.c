@@ -20,27 +20,26 @@ static void fill_rect(uint8_t *labels, int32_t width, ptie_rect rect, uint8_t la
         memset(labels + (ptrdiff_t)y * width + rect.x_px, label, (size_t)rect.width_px);
 }
 
-void ptie_metrics_label_rects(uint8_t *labels, int32_t width, int32_t height, ptie_rect jet,
-                              ptie_rect background) {
+/* Written so that no sum of the caller's numbers overflows. */
+static ptie_status check_rect(ptie_rect r, int32_t width, int32_t height, const char *name) {
+    const bool inside = r.x_px >= 0 && r.y_px >= 0 && r.width_px > 0 && r.height_px > 0 &&
+                        r.width_px <= width && r.x_px <= width - r.width_px &&
+                        r.height_px <= height && r.y_px <= height - r.height_px;
+    if (inside) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EINVAL,
+                     "region '%s' leaves the image or is empty (expected within %d x %d px, found "
+                     "%d x %d at x=%d, y=%d)",
+                     name, width, height, r.width_px, r.height_px, r.x_px, r.y_px);
+}
+
+ptie_status ptie_metrics_label_rects(uint8_t *labels, int32_t width, int32_t height, ptie_rect jet,
+                                     ptie_rect background) {
+    PTIE_TRY(check_rect(jet, width, height, "jet"));
+    PTIE_TRY(check_rect(background, width, height, "background"));
     memset(labels, PTIE_NOWHERE, (size_t)width * (size_t)height);
     fill_rect(labels, width, background, PTIE_BACKGROUND);
     fill_rect(labels, width, jet, PTIE_JET);
-}
-
-static int ascending(const void *a, const void *b) {
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
-/* border: scratch for 2 (width + height) values. */
-static double border_median(const float *map, int32_t width, int32_t height, float *border) {
-    const size_t w = (size_t)width, h = (size_t)height;
-    size_t count = 0;
-    for (size_t x = 0; x < w; x++) border[count++] = map[x], border[count++] = map[(h - 1) * w + x];
-    for (size_t y = 0; y < h; y++)
-        border[count++] = map[y * w], border[count++] = map[y * w + w - 1];
-    qsort(border, count, sizeof *border, ascending);
-    return ((double)border[count / 2 - 1] + (double)border[count / 2]) / 2;
+    return PTIE_OK;
 }
 
 static int32_t bin_of(double magnitude, double largest) {
@@ -113,7 +112,7 @@ static void clean(uint8_t *mask, int32_t width, int32_t height, const scratch *s
 static ptie_status propose(uint8_t *labels, const float *map, int32_t width, int32_t height,
                            const scratch *s) {
     const size_t pixels = (size_t)width * (size_t)height;
-    const double level = border_median(map, width, height, s->border);
+    const double level = ptie_image_border_median(map, width, height, s->border);
     PTIE_TRY(threshold_map(s->jet, map, pixels, level));
     clean(s->jet, width, height, s);
     memcpy(s->near_jet, s->jet, pixels);

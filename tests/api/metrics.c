@@ -36,9 +36,9 @@ static void rectangles_must_lie_inside(void **state) {
     assert_ok(ptie_regions_from_rects(labels, 4, 4, all, all));
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         assert_fails(ptie_regions_from_rects(labels, 4, 4, bad[i], all), PTIE_EINVAL,
-                     "jet leaves the image or is empty (expected within 4 x 4, found");
+                     "region 'jet' leaves the image or is empty (expected within 4 x 4 px, found");
         assert_fails(ptie_regions_from_rects(labels, 4, 4, all, bad[i]), PTIE_EINVAL,
-                     "background leaves the image or is empty");
+                     "region 'background' leaves the image or is empty");
     }
     for (int i = 0; i < 16; i++) assert_int_equal(labels[i], PTIE_JET); /* untouched */
     assert_fails(ptie_regions_from_rects(NULL, 4, 4, all, all), PTIE_EINVAL, "labels is missing");

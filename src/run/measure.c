@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "run/measure.h"
+
+#include <math.h>
+
+#include "metrics/metrics.h"
+
+static const char *const names[PTIE_RUN_METRICS] = {"mgm", "sbr", "bns", "cnr", "rmse_rad", "correlation"};
+
+const char *ptie_run_metric_name(int which) {
+    return names[which];
+}
+
+/* Standard deviation of the difference, and Pearson's correlation: both blind to the means. */
+static void compare_with_truth(double *rmse, double *correlation, const float *map, const float *truth,
+                               size_t count) {
+    double mean_map = 0, mean_truth = 0, difference = 0, map2 = 0, truth2 = 0, cross = 0;
+    for (size_t i = 0; i < count; i++) {
+        mean_map += (double)map[i];
+        mean_truth += (double)truth[i];
+    }
+    mean_map /= (double)count;
+    mean_truth /= (double)count;
+    for (size_t i = 0; i < count; i++) {
+        double a = (double)map[i] - mean_map, b = (double)truth[i] - mean_truth;
+        difference += (a - b) * (a - b);
+        map2 += a * a;
+        truth2 += b * b;
+        cross += a * b;
+    }
+    *rmse = sqrt(difference / (double)count);
+    *correlation = map2 > 0 && truth2 > 0 ? cross / sqrt(map2 * truth2) : (double)NAN;
+}
+
+ptie_status ptie_run_measure(double *value, const float *map, const float *truth, const uint8_t *labels,
+                             int32_t width_px, int32_t height_px) {
+    ptie_flow_metrics flow;
+    PTIE_TRY(ptie_metrics_flow(&flow, map, labels, width_px, height_px));
+    value[PTIE_MGM] = flow.mgm;
+    value[PTIE_SBR] = flow.sbr;
+    value[PTIE_BNS] = flow.bns;
+    value[PTIE_CNR] = flow.cnr;
+    value[PTIE_RMSE_RAD] = value[PTIE_CORRELATION] = (double)NAN;
+    if (truth)
+        compare_with_truth(&value[PTIE_RMSE_RAD], &value[PTIE_CORRELATION], map, truth,
+                           (size_t)width_px * (size_t)height_px);
+    return PTIE_OK;
+}
+
+static ptie_stat over_frames(const double *values, int64_t frames) {
+    double mean = 0, squares = 0;
+    for (int64_t t = 0; t < frames; t++) mean += values[t * PTIE_RUN_METRICS];
+    mean /= (double)frames;
+    for (int64_t t = 0; t < frames; t++) {
+        double off = values[t * PTIE_RUN_METRICS] - mean;
+        squares += off * off;
+    }
+    /* n - 1: the frames are a sample of the flow.  One frame has no deviation. */
+    return (ptie_stat){mean, frames > 1 ? sqrt(squares / (double)(frames - 1)) : 0};
+}
+
+ptie_run_row ptie_run_summarise(const double *values, int64_t frames) {
+    return (ptie_run_row){.mgm = over_frames(values + PTIE_MGM, frames),
+                          .sbr = over_frames(values + PTIE_SBR, frames),
+                          .bns = over_frames(values + PTIE_BNS, frames),
+                          .cnr = over_frames(values + PTIE_CNR, frames),
+                          .rmse_rad = over_frames(values + PTIE_RMSE_RAD, frames),
+                          .correlation = over_frames(values + PTIE_CORRELATION, frames)};
+}

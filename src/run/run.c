@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* recording -> phase -> denoised phase -> metrics, in blocks of frames.  The metrics need regions, the
+   regions the mean of all frames: so maps are written first and measured in a second pass. */
+#include "run/run.h"
+
+#include <math.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/memory.h"
+#include "io/recording.h"
+#include "metrics/metrics.h"
+#include "run/output.h"
+#include "run/source.h"
+#include "run/worker.h"
+
+typedef struct run {
+    const ptie_engine *engine;
+    const ptie_run_params *params;
+    ptie_source *source;
+    ptie_recording *truth; /* or NULL */
+    ptie_frame_plan *plan;
+    ptie_h5 *output;
+    ptie_output_file csv; /* open when the metrics go to a table too */
+    ptie_source_shape shape;
+    size_t pixels;
+    int64_t frames; /* to do */
+    int64_t block;  /* frames per block */
+
+    float *plus, *zero, *minus, *phase, *denoised; /* (block, H, W); zero, minus, denoised may be NULL */
+    float *true_phase, *true_raw;                  /* (block, H, W); one frame as recorded */
+    double *mean;                                  /* (H, W): sum of the best map over frames */
+    uint8_t *labels;                               /* (H, W) */
+    double *phase_metrics, *denoised_metrics;      /* (frames, PTIE_RUN_METRICS) */
+    int64_t done; /* frames of the current block's first */
+} run;
+
+static double now_s(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Recording frame that is frame i of the run. */
+static int64_t recorded_frame(const run *r, int64_t i) {
+    return r->params->first + i * r->params->step;
+}
+
+static ptie_status choose_frames(run *r) {
+    const ptie_run_params *p = r->params;
+    if (p->first >= r->shape.frames)
+        return PTIE_FAIL(PTIE_EINVAL, "%s: first frame out of range (expected 0..%lld, found %lld)", p->plus,
+                         (long long)r->shape.frames - 1, (long long)p->first);
+    int64_t available = (r->shape.frames - p->first + p->step - 1) / p->step;
+    if (p->count > available)
+        return PTIE_FAIL(PTIE_EINVAL, "%s: too few frames (expected %lld from frame %lld in steps of %lld, "
+                                      "found %lld)", p->plus, (long long)p->count, (long long)p->first,
+                         (long long)p->step, (long long)available);
+    r->frames = p->count ? p->count : available;
+    r->block = 4 * ptie_pool_threads(r->engine->pool);
+    if (r->block > r->frames) r->block = r->frames;
+    return PTIE_OK;
+}
+
+static ptie_status open_truth(run *r) {
+    const char *path = r->params->truth;
+    if (!path) return PTIE_OK;
+    PTIE_TRY(ptie_io_open(&r->truth, path));
+    const ptie_recording_info *info = ptie_io_info(r->truth);
+    int32_t binning = r->params->rig->binning;
+    if (info->width_px / binning != r->shape.width_px || info->height_px / binning != r->shape.height_px)
+        return PTIE_FAIL(PTIE_ESIZE, "%s: truth does not fit the phase (expected %d x %d px, found %d x %d)",
+                         path, r->shape.width_px * binning, r->shape.height_px * binning, info->width_px,
+                         info->height_px);
+    if (info->frames < r->shape.frames)
+        return PTIE_FAIL(PTIE_ESIZE, "%s: too few frames of truth (expected %lld, found %lld)", path,
+                         (long long)r->shape.frames, (long long)info->frames);
+    return ptie_alloc_status(&r->true_raw, (size_t)info->width_px * (size_t)info->height_px, sizeof(float),
+                             path);
+}
+
+static ptie_status allocate(run *r) {
+    size_t block = (size_t)r->block * r->pixels, table = (size_t)r->frames * PTIE_RUN_METRICS;
+    PTIE_TRY(ptie_alloc_status(&r->plus, block, sizeof(float), "run"));
+    PTIE_TRY(ptie_alloc_status(&r->phase, block, sizeof(float), "run"));
+    if (r->shape.has_zero) PTIE_TRY(ptie_alloc_status(&r->zero, block, sizeof(float), "run"));
+    if (r->shape.has_minus) PTIE_TRY(ptie_alloc_status(&r->minus, block, sizeof(float), "run"));
+    if (r->truth) PTIE_TRY(ptie_alloc_status(&r->true_phase, block, sizeof(float), "run"));
+    if (r->params->model) {
+        PTIE_TRY(ptie_alloc_status(&r->denoised, block, sizeof(float), "run"));
+        PTIE_TRY(ptie_alloc_status(&r->denoised_metrics, table, sizeof(double), "run"));
+    }
+    PTIE_TRY(ptie_alloc_status(&r->phase_metrics, table, sizeof(double), "run"));
+    PTIE_TRY(ptie_alloc_status(&r->mean, r->pixels, sizeof(double), "run"));
+    return ptie_alloc_status(&r->labels, r->pixels, 1, "run");
+}
+
+static ptie_status prepare(run *r) {
+    const ptie_run_params *p = r->params;
+    PTIE_TRY(ptie_source_open(&r->source, p));
+    r->shape = ptie_source_get_shape(r->source);
+    r->pixels = (size_t)r->shape.width_px * (size_t)r->shape.height_px;
+    PTIE_TRY(choose_frames(r));
+    PTIE_TRY(open_truth(r));
+    PTIE_TRY(ptie_frame_plan_create(&r->plan, r->engine, p->rig, p->model, r->shape.width_px,
+                                    r->shape.height_px));
+    PTIE_TRY(allocate(r));
+    double rate_hz = p->rig->frame_rate_hz > 0 ? p->rig->frame_rate_hz : r->shape.frame_rate_hz;
+    if (p->metrics_csv) PTIE_TRY(ptie_output_open(&r->csv, p->metrics_csv, p->overwrite));
+    return ptie_output_create(&r->output, p,
+                              &(ptie_nexus_axes){.frames = (uint64_t)r->frames,
+                                                 .width_px = r->shape.width_px,
+                                                 .height_px = r->shape.height_px,
+                                                 .first_frame = p->first,
+                                                 .frame_step = p->step,
+                                                 .frame_rate_hz = rate_hz,
+                                                 .pixel_m = p->rig->pixel_m * p->rig->binning});
+}
+
+static float *frame_of(float *block, const run *r, size_t i) {
+    return block ? block + i * r->pixels : NULL;
+}
+
+static ptie_status solve_task(void *context, size_t i, int32_t worker) {
+    run *r = context;
+    return ptie_frame_solve(r->plan, worker, frame_of(r->phase, r, i), frame_of(r->denoised, r, i),
+                            frame_of(r->plus, r, i), frame_of(r->zero, r, i), frame_of(r->minus, r, i));
+}
+
+static void add_to_mean(run *r, size_t count) {
+    const float *best = r->denoised ? r->denoised : r->phase;
+    for (size_t n = 0; n < count; n++)
+        for (size_t i = 0; i < r->pixels; i++) r->mean[i] += (double)best[n * r->pixels + i];
+}
+
+/* First pass: solve, denoise and write every frame. */
+static ptie_status solve_frames(run *r, ptie_progress progress) {
+    for (int64_t first = 0; first < r->frames; first += r->block) {
+        size_t count = (size_t)(r->frames - first < r->block ? r->frames - first : r->block);
+        for (size_t i = 0; i < count; i++)
+            PTIE_TRY(ptie_source_read(r->source, recorded_frame(r, first + (int64_t)i),
+                                      frame_of(r->plus, r, i), frame_of(r->zero, r, i),
+                                      frame_of(r->minus, r, i)));
+        PTIE_TRY(ptie_pool_run(r->engine->pool, count, solve_task, r));
+        PTIE_TRY(ptie_h5_write(r->output, PTIE_RUN_PHASE, PTIE_H5_F32, (uint64_t)first, count, r->phase));
+        if (r->denoised)
+            PTIE_TRY(ptie_h5_write(r->output, PTIE_RUN_DENOISED, PTIE_H5_F32, (uint64_t)first, count,
+                                   r->denoised));
+        add_to_mean(r, count);
+        PTIE_TRY(ptie_progress_report(progress, (uint64_t)first + count, (uint64_t)r->frames, NULL));
+    }
+    return PTIE_OK;
+}
+
+static ptie_status find_regions(run *r) {
+    const ptie_run_params *p = r->params;
+    if (p->jet.width_px > 0)
+        return ptie_metrics_label_rects(r->labels, r->shape.width_px, r->shape.height_px, p->jet, p->background);
+    float *mean = r->phase; /* the block is free now */
+    for (size_t i = 0; i < r->pixels; i++) mean[i] = (float)(r->mean[i] / (double)r->frames);
+    return ptie_metrics_propose(r->labels, mean, r->shape.width_px, r->shape.height_px);
+}
+
+static ptie_status measure_task(void *context, size_t i, int32_t worker) {
+    (void)worker;
+    run *r = context;
+    size_t row = ((size_t)r->done + i) * PTIE_RUN_METRICS;
+    const float *truth = frame_of(r->true_phase, r, i);
+    PTIE_TRY(ptie_run_measure(r->phase_metrics + row, frame_of(r->phase, r, i), truth, r->labels,
+                              r->shape.width_px, r->shape.height_px));
+    if (!r->denoised) return PTIE_OK;
+    return ptie_run_measure(r->denoised_metrics + row, frame_of(r->denoised, r, i), truth, r->labels,
+                            r->shape.width_px, r->shape.height_px);
+}
+
+static ptie_status read_truth(run *r, int64_t first, size_t count) {
+    if (!r->truth) return PTIE_OK;
+    const ptie_recording_info *info = ptie_io_info(r->truth);
+    for (size_t i = 0; i < count; i++) {
+        PTIE_TRY(ptie_io_read(r->truth, recorded_frame(r, first + (int64_t)i), r->true_raw));
+        ptie_bin(frame_of(r->true_phase, r, i), r->true_raw, info->width_px, info->height_px,
+                 r->params->rig->binning);
+    }
+    return PTIE_OK;
+}
+
+/* Second pass: the metrics of every frame. */
+static ptie_status measure_frames(run *r) {
+    PTIE_TRY(find_regions(r));
+    for (r->done = 0; r->done < r->frames; r->done += r->block) {
+        size_t count = (size_t)(r->frames - r->done < r->block ? r->frames - r->done : r->block);
+        uint64_t first = (uint64_t)r->done;
+        PTIE_TRY(ptie_h5_read(r->output, PTIE_RUN_PHASE, PTIE_H5_F32, first, count, r->phase));
+        if (r->denoised)
+            PTIE_TRY(ptie_h5_read(r->output, PTIE_RUN_DENOISED, PTIE_H5_F32, first, count, r->denoised));
+        PTIE_TRY(read_truth(r, r->done, count));
+        PTIE_TRY(ptie_pool_run(r->engine->pool, count, measure_task, r));
+    }
+    PTIE_TRY(ptie_output_regions(r->output, r->labels, r->shape.width_px, r->shape.height_px));
+    PTIE_TRY(ptie_output_metrics(r->output, "phase", r->phase_metrics, r->frames));
+    if (r->denoised)
+        PTIE_TRY(ptie_output_metrics(r->output, "denoised", r->denoised_metrics, r->frames));
+    return PTIE_OK;
+}
+
+static ptie_run_row no_row(void) {
+    const ptie_stat none = {(double)NAN, (double)NAN};
+    return (ptie_run_row){none, none, none, none, none, none};
+}
+
+static ptie_run_summary summarise(const run *r) {
+    return (ptie_run_summary){
+        .frames = r->frames,
+        .width_px = r->shape.width_px,
+        .height_px = r->shape.height_px,
+        .pixel_m = r->params->rig->pixel_m * r->params->rig->binning,
+        .phase = ptie_run_summarise(r->phase_metrics, r->frames),
+        .denoised = r->denoised ? ptie_run_summarise(r->denoised_metrics, r->frames) : no_row(),
+    };
+}
+
+static void release(run *r) {
+    void *const blocks[] = {r->plus, r->zero, r->minus, r->phase, r->denoised, r->true_phase, r->true_raw,
+                            r->mean, r->labels, r->phase_metrics, r->denoised_metrics};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) ptie_free(blocks[i]);
+    ptie_h5_discard(r->output);
+    ptie_output_discard(&r->csv);
+    ptie_frame_plan_free(r->plan);
+    ptie_io_close(r->truth);
+    ptie_source_close(r->source);
+}
+
+ptie_status ptie_run_pipeline(const ptie_engine *engine, const ptie_run_params *params,
+                              ptie_run_summary *summary, ptie_progress progress) {
+    double start = now_s();
+    run r = {.engine = engine, .params = params};
+    ptie_status status;
+    PTIE_TRY_DONE(prepare(&r));
+    PTIE_TRY_DONE(solve_frames(&r, progress));
+    PTIE_TRY_DONE(measure_frames(&r));
+    if (params->metrics_csv)
+        PTIE_TRY_DONE(ptie_output_csv(&r.csv, params, r.phase_metrics, r.denoised_metrics, r.frames));
+    ptie_h5 *output = r.output;
+    r.output = NULL;
+    PTIE_TRY_DONE(ptie_h5_close(output));
+    if (params->metrics_csv) PTIE_TRY_DONE(ptie_output_commit(&r.csv));
+    *summary = summarise(&r);
+    summary->seconds = now_s() - start;
+done:
+    release(&r);
+    return status;
+}

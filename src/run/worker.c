@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "run/worker.h"
+
+#include "base/image.h"
+#include "base/memory.h"
+#include "nn/nn.h"
+#include "tie/solver.h"
+
+struct ptie_frame_plan {
+    int32_t width, height;
+    bool zero_border;
+    int32_t polarity;
+    ptie_solver *solver;
+    ptie_denoiser *denoiser; /* NULL without a model */
+    int32_t workers;
+    void **scratch; /* one block per worker */
+};
+
+static ptie_status plan_solver(ptie_frame_plan *plan, const ptie_rig *rig) {
+    return ptie_tie_plan(&plan->solver, &(ptie_solver_params){
+                                            .struct_size = sizeof(ptie_solver_params),
+                                            .width_px = plan->width,
+                                            .height_px = plan->height,
+                                            .pixel_m = rig->pixel_m * rig->binning,
+                                            .wavelength_m = rig->wavelength_m,
+                                            .defocus_plus_m = rig->defocus_plus_m,
+                                            .defocus_minus_m = rig->defocus_minus_m,
+                                            .boundary = rig->boundary,
+                                            .cutoff_m = rig->cutoff_m,
+                                        });
+}
+
+static size_t scratch_bytes(const ptie_frame_plan *plan) {
+    size_t bytes = 2 * ((size_t)plan->width + (size_t)plan->height) * sizeof(float); /* pin_border */
+    size_t solver = ptie_tie_scratch(plan->solver);
+    size_t denoiser = plan->denoiser ? ptie_nn_denoiser_scratch(plan->denoiser) : 0;
+    if (bytes < solver) bytes = solver;
+    return bytes < denoiser ? denoiser : bytes;
+}
+
+static ptie_status build(ptie_frame_plan *plan, const ptie_engine *engine, const ptie_rig *rig,
+                         const ptie_model *model) {
+    PTIE_TRY(plan_solver(plan, rig));
+    if (model)
+        PTIE_TRY(ptie_nn_denoiser(&plan->denoiser, engine, model, plan->width, plan->height));
+    PTIE_TRY(ptie_alloc_status(&plan->scratch, (size_t)plan->workers, sizeof *plan->scratch, "run"));
+    for (int32_t i = 0; i < plan->workers; i++)
+        PTIE_TRY(ptie_alloc_status(&plan->scratch[i], scratch_bytes(plan), 1, "run: scratch"));
+    return PTIE_OK;
+}
+
+ptie_status ptie_frame_plan_create(ptie_frame_plan **out, const ptie_engine *engine,
+                                   const ptie_rig *rig, const ptie_model *model, int32_t width_px,
+                                   int32_t height_px) {
+    *out = NULL;
+    ptie_frame_plan *plan;
+    PTIE_TRY(ptie_alloc_status(&plan, 1, sizeof *plan, "run"));
+    plan->width = width_px;
+    plan->height = height_px;
+    plan->zero_border = rig->zero_border;
+    plan->polarity = rig->polarity;
+    plan->workers = ptie_pool_threads(engine->pool);
+    ptie_status status = build(plan, engine, rig, model);
+    if (status == PTIE_OK)
+        *out = plan;
+    else
+        ptie_frame_plan_free(plan);
+    return status;
+}
+
+void ptie_frame_plan_free(ptie_frame_plan *plan) {
+    if (!plan) return;
+    for (int32_t i = 0; plan->scratch && i < plan->workers; i++) ptie_free(plan->scratch[i]);
+    ptie_free(plan->scratch);
+    ptie_solver_free(plan->solver);
+    ptie_denoiser_free(plan->denoiser);
+    ptie_free(plan);
+}
+
+/* The mean of a TIE phase is not measured; the level around the flow becomes 0. */
+static void pin_border(float *phase, int32_t width, int32_t height, float *border) {
+    float level = (float)ptie_image_border_median(phase, width, height, border);
+    for (ptrdiff_t i = 0; i < (ptrdiff_t)width * height; i++) phase[i] -= level;
+}
+
+ptie_status ptie_frame_solve(const ptie_frame_plan *plan, int32_t worker, float *phase, float *denoised,
+                             const float *i_plus, const float *i_zero, const float *i_minus) {
+    void *scratch = plan->scratch[worker];
+    PTIE_TRY(ptie_tie_solve(plan->solver, phase, i_plus, i_zero, i_minus, scratch));
+    if (plan->zero_border) pin_border(phase, plan->width, plan->height, scratch);
+    if (!plan->denoiser) return PTIE_OK;
+    return ptie_nn_denoise_rad(plan->denoiser, denoised, phase, plan->polarity, scratch);
+}

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* One frame from planes to denoised phase: plans shared by all threads, scratch for each. */
+#ifndef PTIE_RUN_WORKER_H
+#define PTIE_RUN_WORKER_H
+
+#include <ptie/run.h>
+
+#include "kernel/engine.h"
+
+typedef struct ptie_frame_plan ptie_frame_plan;
+
+ptie_status ptie_frame_plan_create(ptie_frame_plan **out, const ptie_engine *engine,
+                                   const ptie_rig *rig, const ptie_model *model, int32_t width_px,
+                                   int32_t height_px);
+void ptie_frame_plan_free(ptie_frame_plan *plan); /* NULL is fine */
+
+/* phase, denoised (out; denoised untouched without a model) from the planes; i_zero or i_minus may be
+   NULL as the rig says.  `worker` picks the scratch. */
+ptie_status ptie_frame_solve(const ptie_frame_plan *plan, int32_t worker, float *phase, float *denoised,
+                             const float *i_plus, const float *i_zero, const float *i_minus);
+
+#endif

@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The pipeline on recordings made here: what it computes, that it is independent of threads and blocks, and
+   what it refuses. */
+#include "support/support.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include <ptie/ptie.h>
+
+enum { WIDTH = 48, HEIGHT = 40, PIXELS = WIDTH * HEIGHT, FRAMES = 11 };
+
+static const double pixel_m = 20e-6;
+
+/* A blob that drifts; amplitude about 1 rad. */
+static void true_phase(float *phase, int frame) {
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            double dx = x - 16 - frame, dy = y - 20;
+            phase[y * WIDTH + x] = (float)exp(-(dx * dx + dy * dy) / 40);
+        }
+}
+
+static void write_recording(const char *path, float (*frames)[PIXELS], int count) {
+    ptie_writer *writer;
+    ptie_recording_info info = {.width_px = WIDTH, .height_px = HEIGHT, .frames = count, .unit = "counts"};
+    assert_ok(ptie_writer_create(&writer, path, "intensity", &info, true));
+    for (int t = 0; t < count; t++) assert_ok(ptie_writer_append(writer, frames[t]));
+    assert_ok(ptie_writer_close(writer));
+}
+
+static ptie_optics *make_optics(ptie_ctx *ctx) {
+    ptie_optics_params p;
+    ptie_optics *optics;
+    ptie_optics_params_init(&p);
+    p.width_px = WIDTH, p.height_px = HEIGHT, p.pixel_m = pixel_m, p.boundary = PTIE_MIRROR;
+    assert_ok(ptie_optics_create(&optics, ctx, &p));
+    return optics;
+}
+
+/* plus.npy, minus.npy, truth.npy, flat.npy in the temporary folder; sensor counts around 1000. */
+static void write_pair(void) {
+    static float plus[FRAMES][PIXELS], minus[FRAMES][PIXELS], truth[FRAMES][PIXELS], flat[1][PIXELS];
+    ptie_ctx *ctx;
+    assert_ok(ptie_ctx_create(&ctx, NULL));
+    ptie_optics *optics = make_optics(ctx);
+    void *scratch = ptie_scratch_alloc(ptie_optics_scratch_bytes(optics));
+    for (int t = 0; t < FRAMES; t++) {
+        true_phase(truth[t], t);
+        assert_ok(ptie_optics_run(optics, plus[t], minus[t], truth[t], NULL, scratch));
+        for (int i = 0; i < PIXELS; i++) plus[t][i] *= 1000, minus[t][i] *= 1000;
+    }
+    for (int i = 0; i < PIXELS; i++) flat[0][i] = 1000;
+    write_recording(support_temporary("plus.npy"), plus, FRAMES);
+    write_recording(support_temporary("minus.npy"), minus, FRAMES);
+    write_recording(support_temporary("truth.npy"), truth, FRAMES);
+    write_recording(support_temporary("flat.npy"), flat, 1);
+    ptie_scratch_free(scratch);
+    ptie_optics_free(optics);
+    ptie_ctx_free(ctx);
+}
+
+typedef struct setting {
+    ptie_rig rig;
+    ptie_run_params params;
+    char plus[256], minus[256], truth[256], output[256], reference[256];
+} setting;
+
+static void init(setting *s) {
+    memset(s, 0, sizeof *s);
+    ptie_rig_init(&s->rig);
+    s->rig.pixel_m = pixel_m;
+    ptie_run_params_init(&s->params);
+    snprintf(s->plus, sizeof s->plus, "%s", support_temporary("plus.npy"));
+    snprintf(s->minus, sizeof s->minus, "%s", support_temporary("minus.npy"));
+    snprintf(s->truth, sizeof s->truth, "%s", support_temporary("truth.npy"));
+    snprintf(s->output, sizeof s->output, "%s", support_temporary("out.h5"));
+    snprintf(s->reference, sizeof s->reference, "%s", support_temporary("flat.npy"));
+    s->params.rig = &s->rig;
+    s->params.plus = s->plus;
+    s->params.minus = s->minus;
+    s->params.truth = s->truth;
+    s->params.output = s->output;
+    s->params.overwrite = true;
+}
+
+static ptie_status run_with(const setting *s, int32_t threads, ptie_run_summary *summary) {
+    ptie_ctx *ctx;
+    ptie_ctx_params p;
+    ptie_ctx_params_init(&p);
+    p.threads = threads;
+    assert_ok(ptie_ctx_create(&ctx, &p));
+    ptie_status status = ptie_run(ctx, &s->params, summary, (ptie_progress){0});
+    ptie_ctx_free(ctx);
+    return status;
+}
+
+static void read_phase(float (*frames)[PIXELS], const char *path) {
+    ptie_recording *recording;
+    assert_ok(ptie_recording_open(&recording, path));
+    assert_int_equal(ptie_recording_get_info(recording)->frames, FRAMES);
+    assert_string_equal(ptie_recording_get_info(recording)->unit, "rad");
+    for (int t = 0; t < FRAMES; t++) assert_ok(ptie_recording_read(recording, t, frames[t]));
+    ptie_recording_close(recording);
+}
+
+static void a_pair_gives_back_the_phase_on_any_number_of_threads(void **state) {
+    (void)state;
+    static float one[FRAMES][PIXELS], three[FRAMES][PIXELS];
+    setting s;
+    ptie_run_summary summary;
+    init(&s);
+    assert_ok(run_with(&s, 1, &summary));
+    assert_int_equal(summary.frames, FRAMES);
+    /* Intensities near 1000 are stored in f32 with relative spacing 2^-24 .. 2^-23, a white error of at most
+       3.5e-8 (uniform, 2^-23/sqrt(12)) per image; (M8) for DCT turns it into 0.11528 (2 pi/lambda) sigma N p^2/dz
+       = 9e-8 rad for N = 48.  Times 10 for the transforms' own rounding. */
+    assert_near(summary.phase.rmse_rad.mean, 0, 1e-6);
+    assert_true(summary.phase.correlation.mean > 0.999999);
+    assert_true(isnan(summary.denoised.mgm.mean));
+    read_phase(one, s.output);
+    assert_ok(run_with(&s, 3, &summary));
+    read_phase(three, s.output);
+    assert_memory_equal(one, three, sizeof one);
+}
+
+static void the_border_is_zero_and_a_subset_is_the_same(void **state) {
+    (void)state;
+    static float all[FRAMES][PIXELS];
+    setting s;
+    ptie_run_summary summary;
+    init(&s);
+    assert_ok(run_with(&s, 2, &summary));
+    read_phase(all, s.output);
+    /* The blob's tail at the border is exp(-16^2/40) = 2e-3 rad at most; the median far below. */
+    assert_near((double)all[0][PIXELS - 1], 0, 2e-3);
+    s.params.first = 3, s.params.count = 2, s.params.step = 4;
+    assert_ok(run_with(&s, 2, &summary));
+    assert_int_equal(summary.frames, 2);
+    float frame[PIXELS];
+    ptie_recording *recording;
+    assert_ok(ptie_recording_open(&recording, s.output));
+    for (int i = 0; i < 2; i++) {
+        assert_ok(ptie_recording_read(recording, i, frame));
+        assert_memory_equal(frame, all[3 + 4 * i], sizeof frame);
+    }
+    ptie_recording_close(recording);
+}
+
+static void one_plane_with_a_reference_gives_the_same_phase(void **state) {
+    (void)state;
+    setting s;
+    ptie_run_summary summary;
+    init(&s);
+    s.rig.planes = PTIE_PLANES_REFERENCE;
+    s.params.minus = NULL;
+    s.params.reference = s.reference;
+    assert_ok(run_with(&s, 2, &summary));
+    /* One difference over dz instead of two over 2 dz: twice the bound of the pair. */
+    assert_near(summary.phase.rmse_rad.mean, 0, 2e-6);
+}
+
+static void binning_solves_on_larger_pixels(void **state) {
+    (void)state;
+    setting s;
+    ptie_run_summary summary;
+    init(&s);
+    s.rig.binning = 2;
+    assert_ok(run_with(&s, 2, &summary));
+    assert_int_equal(summary.width_px, WIDTH / 2);
+    assert_near(summary.pixel_m, 2 * pixel_m, 1e-18);
+    /* Binning commutes with the Laplacian of a smooth phase up to (q p)^2 / 24 per axis: the blob's spectrum
+       exp(-10 q^2) has q p < 0.5 at 2 sigma; 1 % of 0.2 rad rms, with margin 2. */
+    assert_near(summary.phase.rmse_rad.mean, 0, 4e-3);
+    assert_true(summary.phase.correlation.mean > 0.999);
+}
+
+static void regions_can_be_given(void **state) {
+    (void)state;
+    setting s;
+    ptie_run_summary summary;
+    init(&s);
+    s.params.jet = (ptie_rect){14, 16, 12, 8};
+    s.params.background = (ptie_rect){0, 0, 48, 6};
+    assert_ok(run_with(&s, 1, &summary));
+    assert_true(summary.phase.cnr.mean > 1);
+    s.params.jet.width_px = 100;
+    assert_fails(run_with(&s, 1, &summary), PTIE_EINVAL, "jet");
+}
+
+static bool nothing_left(const setting *s) {
+    char part[300];
+    snprintf(part, sizeof part, "%s.part", s->output);
+    return !support_exists(s->output) && !support_exists(part);
+}
+
+static void what_does_not_fit_is_refused_and_leaves_nothing(void **state) {
+    (void)state;
+    static float small[1][PIXELS], bad[FRAMES][PIXELS];
+    setting s;
+    ptie_run_summary summary;
+    init(&s);
+    remove(s.output);
+    write_recording(support_temporary("short.npy"), small, 1);
+    s.params.minus = support_temporary("short.npy");
+    assert_fails(run_with(&s, 1, &summary), PTIE_ESIZE, "expected 11, found 1");
+    s.params.minus = NULL;
+    assert_fails(run_with(&s, 1, &summary), PTIE_EINVAL, "plane 'minus' is missing");
+    s.rig.planes = PTIE_PLANES_REFERENCE;
+    assert_fails(run_with(&s, 1, &summary), PTIE_EINVAL, "no-flow reference is missing");
+
+    init(&s);
+    s.params.first = 11;
+    assert_fails(run_with(&s, 1, &summary), PTIE_EINVAL, "expected 0..10, found 11");
+    s.params.first = 0;
+    s.params.plus = support_temporary("none.npy");
+    assert_fails(run_with(&s, 1, &summary), PTIE_EIO, "none.npy");
+
+    for (int i = 0; i < PIXELS; i++) bad[10][i] = 1;
+    bad[10][777] = NAN;
+    write_recording(support_temporary("nan.npy"), bad, FRAMES);
+    init(&s);
+    s.params.minus = support_temporary("nan.npy");
+    assert_fails(run_with(&s, 1, &summary), PTIE_ENUMERIC, "");
+    assert_true(nothing_left(&s));
+}
+
+static int stop_at_once(void *user, uint64_t done, uint64_t total, const char *note) {
+    (void)user, (void)done, (void)total, (void)note;
+    return 1;
+}
+
+static void cancelling_leaves_nothing(void **state) {
+    (void)state;
+    setting s;
+    ptie_run_summary summary;
+    ptie_ctx *ctx;
+    init(&s);
+    remove(s.output);
+    assert_ok(ptie_ctx_create(&ctx, NULL));
+    assert_fails(ptie_run(ctx, &s.params, &summary, (ptie_progress){stop_at_once, NULL}), PTIE_ECANCELLED,
+                 "cancelled");
+    ptie_ctx_free(ctx);
+    assert_true(nothing_left(&s));
+}
+
+static void metrics_go_to_csv(void **state) {
+    (void)state;
+    setting s;
+    ptie_run_summary summary;
+    size_t bytes;
+    init(&s);
+    char csv[256];
+    snprintf(csv, sizeof csv, "%s", support_temporary("metrics.csv"));
+    s.params.metrics_csv = csv;
+    assert_ok(run_with(&s, 2, &summary));
+    char *text = (char *)support_read(csv, &bytes);
+    assert_non_null(strstr(text, "frame,"));
+    int lines = 0;
+    for (size_t i = 0; i < bytes; i++) lines += text[i] == '\n';
+    assert_int_equal(lines, FRAMES + 1);
+    free(text);
+    s.params.overwrite = false;
+    s.params.output = support_temporary("other.h5");
+    assert_fails(run_with(&s, 1, &summary), PTIE_EEXIST, "metrics.csv");
+    assert_false(support_exists(support_temporary("other.h5")));
+}
+
+static int setup(void **state) {
+    (void)state;
+    write_pair();
+    return 0;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_pair_gives_back_the_phase_on_any_number_of_threads),
+        cmocka_unit_test(the_border_is_zero_and_a_subset_is_the_same),
+        cmocka_unit_test(one_plane_with_a_reference_gives_the_same_phase),
+        cmocka_unit_test(binning_solves_on_larger_pixels),
+        cmocka_unit_test(regions_can_be_given),
+        cmocka_unit_test(what_does_not_fit_is_refused_and_leaves_nothing),
+        cmocka_unit_test(cancelling_leaves_nothing),
+        cmocka_unit_test(metrics_go_to_csv),
+    };
+    return cmocka_run_group_tests_name("run", tests, setup, NULL);
+}
