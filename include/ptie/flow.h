@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Clean phase of synthetic flows.  Paper sections 2.1 and 2.4; docs/math.md (F1)-(F11).
+/* Clean phase of synthetic flows.  Paper sections 2.1 and 2.4; docs/math.md (F1)-(F12).
  *
  * Two families share every morphology: the paper's parametric shapes in [0, 1], and physical models
  * (Gladstone-Dale, shocks, flames, plasmas) in rad.  A map is a pure function of its parameters:

@@ -55,11 +55,11 @@ static float bright_at(const void *flow, float x, float y) {
     if (fabsf(p.across) > 6) return 0;
     float value = 0, width;
     for (int i = 0; i < f->count; i++) {
-        float r = fabsf(across(f, &f->tongues[i], &p, &width)),
-              thin = f->sheet / fmaxf(width, 0.2f * f->sheet);
+        float r = fabsf(across(f, &f->tongues[i], &p, &width));
+        float thin = f->sheet / fmaxf(width, 0.2f * f->sheet);
         if (r > 1 + 4 * thin || width < 0.1f * f->sheet) continue;
-        float inside = f->glow * ptie_rise((1 - r) / thin),
-              front = (1 - f->glow) * ptie_bell((r - 1) / thin);
+        float inside = f->glow * ptie_rise((1 - r) / thin);
+        float front = (1 - f->glow) * ptie_bell((r - 1) / thin);
         value = fmaxf(value, f->tongues[i].strength * (inside + front));
     }
     return value * f->cooling / (f->cooling + x) * fmaxf(0, 1 + 0.3f * p.gust) *
@@ -123,9 +123,9 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_UP, -0.15, 0.2, 0.35);
     flame f = {0};
-    double hotter = ptie_random_log_uniform(random, 1.3, 7),
-           edge = ptie_random_log_uniform(random, 0.05, 0.35);
-    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene);
+    double hotter = ptie_random_log_uniform(random, 1.3, 7);
+    double edge = ptie_random_log_uniform(random, 0.05, 0.35);
+    double path = ptie_scene_rad(scene);
     f.rad = (float)(path * ptie_ambient_refractivity() * (1 / hotter - 1));
     ptie_projection_fill_disc(&f.disc, edge);
     PTIE_TRY(draw_flame(&f, scene, random, &axes));

@@ -44,20 +44,20 @@ static ptie_status draw_plume(float *map, const ptie_scene *scene, ptie_random *
 static ptie_status draw_puffs(float *map, const ptie_scene *scene, ptie_random *random,
                               float height) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ANY, 0.0, 0.2, 0.3);
-    double start = ptie_random_uniform(random, 0.02, 0.06),
-           widening = ptie_random_uniform(random, 0.05, 0.2);
-    double aside = ptie_random_uniform(random, 0, 0.25),
-           speed = 0.4 * ptie_speed_draw(scene, random);
-    double spacing = ptie_random_uniform(random, 0.25, 0.7),
-           roundness = ptie_random_uniform(random, 0.5, 1);
+    double start = ptie_random_uniform(random, 0.02, 0.06);
+    double widening = ptie_random_uniform(random, 0.05, 0.2);
+    double aside = ptie_random_uniform(random, 0, 0.25);
+    double speed = 0.4 * ptie_speed_draw(scene, random);
+    double spacing = ptie_random_uniform(random, 0.25, 0.7);
+    double roundness = ptie_random_uniform(random, 0.5, 1);
     uint64_t key = ptie_key_draw(random);
     ptie_train train = ptie_train_make(spacing, speed * scene->time_s, (double)axes.start - 1,
                                        (double)axes.end + 0.5);
     for (int64_t n = train.first; n <= train.last; n++) {
         ptie_random own;
         double x = ptie_train_car(&train, n, key, &own);
-        double age = x - (double)axes.start + 1,
-               sigma = sqrt(start * start + widening * widening * age * age / 4);
+        double age = x - (double)axes.start + 1;
+        double sigma = sqrt(start * start + widening * widening * age * age / 4);
         float tall = ptie_draw(&own, 0.4, 1), y = (float)(aside * ptie_random_normal(&own));
         float angle = ptie_draw(&own, 0, 3.1416);
         ptie_spot spot = {(float)x,     y,
@@ -81,13 +81,12 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
 /* Another gas at the pressure and temperature of the air. */
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
     static const ptie_gas_kind kinds[] = {PTIE_HELIUM, PTIE_CARBON_DIOXIDE, PTIE_METHANE,
-                                          PTIE_HYDROGEN, PTIE_ARGON};
-    const ptie_gas *gas = ptie_gas_get(kinds[ptie_random_integer(random, 0, 4)]);
+                                          PTIE_HYDROGEN};
+    const ptie_gas *gas = ptie_gas_get(kinds[ptie_random_integer(random, 0, 3)]);
     double step =
         ptie_gas_refractivity(gas, PTIE_AMBIENT_PA, PTIE_AMBIENT_K) - ptie_ambient_refractivity();
-    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene);
-    return draw(map, scene, random,
-                (float)(2.5066 * path * step)); /* sqrt(2 pi): depth of a Gaussian */
+    double path = ptie_scene_rad(scene);
+    return draw(map, scene, random, (float)(PTIE_GAUSSIAN_DEPTH * path * step));
 }
 
 const ptie_morphology ptie_flow_diffusion = {"diffusion", "Gas diffusion", parametric, physical};

@@ -19,48 +19,59 @@ static float envelope_at(const void *flow, float x, float y) {
            ptie_smoothstep(x / e->radius + 1);
 }
 
-static envelope envelope_draw(ptie_random *random, const ptie_axes *axes) {
-    return (envelope){.radius = ptie_draw(random, 0.04, 0.14),
-                      .spread = ptie_draw(random, 0.03, 0.2),
-                      .decay = ptie_draw_log(random, 0.5, 4) * axes->end,
-                      .base = 1};
+/* How the eddies in it look. */
+typedef struct crowd {
+    float size, growth, stretch; /* in plume radii; with the plume; largest ratio of axes */
+    double holes, density;       /* share of them that lack gas; eddies per length of their size */
+    double speed;
+    uint64_t key;
+} crowd;
+
+static crowd crowd_draw(const ptie_scene *scene, ptie_random *random) {
+    crowd c = {.size = ptie_draw_log(random, 0.15, 0.5)};
+    c.growth = ptie_draw(random, 0.2, 1);
+    c.stretch = ptie_draw(random, 1, 2.5);
+    c.holes = ptie_random_uniform(random, 0, 0.35);
+    c.density = ptie_random_log_uniform(random, 1.2, 5);
+    c.speed = ptie_speed_draw(scene, random);
+    c.key = ptie_key_draw(random);
+    return c;
 }
 
-/* Gaussian eddies that travel and grow downstream; some are holes. */
+/* One eddy at x; false when a larger one has taken its place. */
+static bool eddy_draw(ptie_spot *spot, ptie_random *own, const crowd *c, const envelope *e,
+                      float x) {
+    float lane = (float)ptie_random_normal(own) * 0.8f;
+    float sign = ptie_chance(own, c->holes) ? -0.5f : 1, tall = ptie_draw(own, 0.3, 1);
+    float slim = ptie_draw(own, 1, (double)c->stretch), scale = ptie_draw_log(own, 0.6, 1.6);
+    float angle = ptie_draw(own, -1.6, 1.6), chance = ptie_draw(own, 0, 1);
+    float down = fmaxf(x, 0), grown = 1 + c->growth * e->spread / e->radius * down;
+    float y = lane * (e->radius + e->spread * down), sigma = c->size * e->radius * grown * scale;
+    *spot = (ptie_spot){x, y, sigma * slim, sigma, angle, sign * tall * envelope_at(e, x, y)};
+    return chance * grown < 1;
+}
+
+/* Gaussian eddies that travel and grow downstream in a fainter plume. */
 static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, -0.25, 0.2, 0.4);
-    envelope e = envelope_draw(random, &axes);
-    float size = ptie_draw_log(random, 0.15, 0.5), growth = ptie_draw(random, 0.2, 1);
-    double holes = ptie_random_uniform(random, 0, 0.35),
-           density = ptie_random_log_uniform(random, 1.2, 5);
-    float base = ptie_draw(random, 0.05, 0.5), stretch = ptie_draw(random, 1, 2.5);
-    double speed = ptie_speed_draw(scene, random);
-    uint64_t key = ptie_key_draw(random);
-    e.base = base;
+    envelope e = {.radius = ptie_draw(random, 0.04, 0.14)};
+    e.spread = ptie_draw(random, 0.03, 0.2);
+    e.decay = ptie_draw_log(random, 0.5, 4) * axes.end;
+    e.base = ptie_draw(random, 0.05, 0.5);
+    crowd c = crowd_draw(scene, random);
     ptie_paint(map, scene, &axes, envelope_at, &e);
     e.base = 1;
-    /* `density` eddies side by side in each stretch of their own size. */
-    double spacing = (double)(size * e.radius) / density;
-    ptie_train train =
-        ptie_train_make(spacing, speed * scene->time_s, (double)-e.radius, (double)axes.end + 0.1);
+    double spacing = (double)(c.size * e.radius) / c.density;
+    ptie_train train = ptie_train_make(spacing, c.speed * scene->time_s, (double)-e.radius,
+                                       (double)axes.end + 0.1);
     for (int64_t n = train.first; n <= train.last; n++) {
         ptie_random own;
-        double x = ptie_train_car(&train, n, key, &own);
-        double lane = ptie_random_normal(&own) * 0.8;
-        bool hole = ptie_chance(&own, holes);
-        float tall = ptie_draw(&own, 0.3, 1), slim = ptie_draw(&own, 1, (double)stretch);
-        float scale = ptie_draw_log(&own, 0.6, 1.6), angle = ptie_draw(&own, -1.6, 1.6);
-        /* Larger eddies are rarer further downstream, where each takes the place of several. */
-        float wide = 1 + growth * e.spread / e.radius * fmaxf((float)x, 0);
-        if (ptie_random_uniform(&own, 0, 1) * (double)wide > 1) continue;
-        float width = e.radius + e.spread * fmaxf((float)x, 0), y = (float)lane * width;
-        float sigma = size * e.radius * wide * scale;
-        float height = envelope_at(&e, (float)x, y) * (hole ? -0.5f : 1) * tall;
-        ptie_spot spot = {(float)x, y, sigma * slim, sigma, angle, height};
-        ptie_splat(map, scene, &axes, &spot);
+        ptie_spot spot;
+        double x = ptie_train_car(&train, n, c.key, &own);
+        if (eddy_draw(&spot, &own, &c, &e, (float)x)) ptie_splat(map, scene, &axes, &spot);
     }
     for (size_t i = 0; i < (size_t)scene->width * (size_t)scene->height; i++)
-        map[i] = fmaxf(map[i], 0);
+        map[i] = fmaxf(map[i], 0); /* a hole is empty at most */
     return PTIE_OK;
 }
 
@@ -68,7 +79,7 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
 typedef struct mixing {
     ptie_stream stream;
     float height; /* rad per unit of path */
-    float decay, stirring, end;
+    float decay, stirring;
 } mixing;
 
 static float mixing_at(const void *flow, float x, float y) {
@@ -87,17 +98,17 @@ static float mixing_at(const void *flow, float x, float y) {
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, -0.25, 0.15, 0.4);
     ptie_stream_ranges ranges = {0.04, 0.12, 0.05, 0.2, 0.2, 0.5};
-    mixing m = {.decay = ptie_draw(random, 0.2, 1.5) * axes.end,
-                .stirring = ptie_draw(random, 0.2, 0.7)};
-    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene),
-           air = ptie_ambient_refractivity();
+    mixing m = {.decay = ptie_draw(random, 0.2, 1.5) * axes.end};
+    m.stirring = ptie_draw(random, 0.2, 0.7);
+    double path = ptie_scene_rad(scene);
+    double air = ptie_ambient_refractivity();
     bool warm = ptie_chance(random, 0.6);
     double heated = PTIE_AMBIENT_K / ptie_random_uniform(random, 330, 900);
     double share = ptie_random_uniform(random, 0.15, 1); /* of another gas */
     const ptie_gas *gas =
         ptie_gas_get(ptie_chance(random, 0.5) ? PTIE_HELIUM : PTIE_CARBON_DIOXIDE);
     double other = ptie_gas_refractivity(gas, PTIE_AMBIENT_PA, PTIE_AMBIENT_K) - air;
-    m.height = (float)(2.5066 * path * (warm ? air * (heated - 1) : other * share));
+    m.height = (float)(PTIE_GAUSSIAN_DEPTH * path * (warm ? air * (heated - 1) : other * share));
     PTIE_TRY(ptie_stream_draw(&m.stream, scene, random, &ranges, (double)axes.end));
     ptie_paint(map, scene, &axes, mixing_at, &m);
     ptie_stream_free(&m.stream);

@@ -42,16 +42,18 @@ static void set_disk(ptie_exhaust *e, const ptie_gas *gas, const ptie_underexpan
 }
 
 static const ptie_gas *gas_draw(ptie_random *random) {
-    static const ptie_gas_kind kinds[] = {PTIE_AIR,
-                                          PTIE_AIR,
-                                          PTIE_AIR,
-                                          PTIE_NITROGEN,
-                                          PTIE_HELIUM,
-                                          PTIE_HELIUM,
-                                          PTIE_ARGON,
-                                          PTIE_CARBON_DIOXIDE,
-                                          PTIE_CARBON_DIOXIDE,
-                                          PTIE_HYDROGEN};
+    static const ptie_gas_kind kinds[] = {
+        PTIE_AIR,
+        PTIE_AIR,
+        PTIE_AIR,
+        PTIE_NITROGEN,
+        PTIE_HELIUM,
+        PTIE_HELIUM,
+        PTIE_ARGON,
+        PTIE_CARBON_DIOXIDE,
+        PTIE_CARBON_DIOXIDE,
+        PTIE_HYDROGEN,
+    };
     return ptie_gas_get(kinds[ptie_random_integer(random, 0, sizeof kinds / sizeof *kinds - 1)]);
 }
 
@@ -61,10 +63,9 @@ void ptie_exhaust_draw(ptie_exhaust *exhaust, const ptie_scene *scene, ptie_rand
     bool choked = ptie_chance(random, 0.6);
     double ratio = ptie_random_log_uniform(random, 2.2, 14);
     double warm_k = ptie_random_uniform(random, 320, 700);
-    double fade_cells = ptie_random_uniform(random, 2, 8),
-           edge = ptie_random_uniform(random, 0.05, 0.3);
-    double path =
-        ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene); /* rad per unit and n - 1 */
+    double fade_cells = ptie_random_uniform(random, 2, 8);
+    double edge = ptie_random_uniform(random, 0.05, 0.3);
+    double path = ptie_scene_rad(scene); /* rad per unit and n - 1 */
     double air_rad = path * ptie_ambient_refractivity(), density;
     const bool is_air = gas == ptie_gas_get(PTIE_AIR) || gas == ptie_gas_get(PTIE_NITROGEN);
     *exhaust = (ptie_exhaust){.nozzle = nozzle, .radius = nozzle};

@@ -39,15 +39,16 @@ static float cone_at(const void *flow, float x, float y) {
 
 static ptie_status streaks_create(ptie_turbulence *out, const ptie_scene *scene,
                                   ptie_random *random) {
-    double size = ptie_random_log_uniform(random, 0.15, 0.6),
-           speed = ptie_speed_draw(scene, random);
+    double size = ptie_random_log_uniform(random, 0.15, 0.6);
+    double speed = ptie_speed_draw(scene, random);
     ptie_turbulence_params params = ptie_turbulence_draw(scene, random, size, 0.15, speed);
     return ptie_turbulence_create(out, &params);
 }
 
 static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, -0.1, 0.35, 0.5);
-    cone c = {.opening = ptie_draw_log(random, 0.12, 0.7), .flatness = ptie_draw(random, 0, 1)};
+    cone c = {.opening = ptie_draw_log(random, 0.12, 0.7)};
+    c.flatness = ptie_draw(random, 0, 1);
     c.source = ptie_draw_log(random, 0.12, 0.9);
     c.reach = ptie_draw_log(random, 0.4, 3) * axes.end;
     c.rays = ptie_chance(random, 0.6) ? ptie_draw(random, 0.1, 0.5) : 0;
@@ -112,11 +113,11 @@ static float corner_at(const void *flow, float x, float y) {
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, 0.05, 0.4, 0.5);
     double mach = ptie_random_uniform(random, 1.2, 3), turn = ptie_random_uniform(random, 0.1, 0.5);
-    double pressure = ptie_random_uniform(random, 0.2, 1),
-           depth = ptie_random_uniform(random, 0.2, 0.8);
+    double pressure = ptie_random_uniform(random, 0.2, 1);
+    double depth = ptie_random_uniform(random, 0.2, 0.8);
     corner c = {.edge = 1.5f * axes.pixel, .streaks = ptie_draw(random, 0.03, 0.12)};
     c.reach = ptie_draw(random, 0.5, 1.2) * axes.end;
-    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene) * depth;
+    double path = ptie_scene_rad(scene) * depth;
     fill_rays(&c, 1.4, mach, turn, path * pressure * ptie_ambient_refractivity());
     PTIE_TRY(streaks_create(&c.turbulence, scene, random));
     ptie_paint(map, scene, &axes, corner_at, &c);

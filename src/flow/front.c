@@ -87,14 +87,14 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
     static const ptie_gas_kind kinds[] = {PTIE_HELIUM, PTIE_CARBON_DIOXIDE, PTIE_ARGON,
                                           PTIE_METHANE};
-    double depth = ptie_random_uniform(random, 0.1, 0.6),
-           warm_k = ptie_random_uniform(random, 310, 1200);
+    double depth = ptie_random_uniform(random, 0.1, 0.6);
+    double warm_k = ptie_random_uniform(random, 310, 1200);
     const ptie_gas *gas = ptie_gas_get(kinds[ptie_random_integer(random, 0, 3)]);
     if (ptie_chance(random, 0.6)) gas = ptie_gas_get(PTIE_AIR);
     double temperature = gas == ptie_gas_get(PTIE_AIR) ? warm_k : PTIE_AMBIENT_K;
     double step =
         ptie_gas_refractivity(gas, PTIE_AMBIENT_PA, temperature) - ptie_ambient_refractivity();
-    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene) * depth;
+    double path = ptie_scene_rad(scene) * depth;
     return draw(map, scene, random, (float)(path * step));
 }
 

@@ -8,6 +8,8 @@
 
 #define PTIE_AMBIENT_PA 101325.0
 #define PTIE_AMBIENT_K 293.15
+/* sqrt(2 pi): path through a Gaussian of standard deviation 1. */
+#define PTIE_GAUSSIAN_DEPTH 2.5066282746310002
 
 typedef struct ptie_gas {
     double gladstone; /* Gladstone-Dale constant (n - 1) / rho, m^3/kg, visible light */

@@ -32,8 +32,8 @@ static float body_at(const body *b, float x, float y) {
     if (b->height <= 0 || t < -4 * b->edge || t > b->length + 4 * b->edge) return 0;
     float half = half_height(b, fmaxf(t, 0)), aside = fabsf(y);
     float ends = ptie_rise(t / b->edge) * ptie_rise((b->length - t) / b->edge);
-    float wall = ptie_rise((half - aside) / b->edge),
-          bore = ptie_rise((0.6f * b->lip - aside) / b->edge);
+    float wall = ptie_rise((half - aside) / b->edge);
+    float bore = ptie_rise((0.6f * b->lip - aside) / b->edge);
     return b->height * ends * wall * (1 - b->hollow * bore);
 }
 
@@ -86,10 +86,10 @@ static void draw_channels(nozzle *n, ptie_random *random, const ptie_axes *axes,
     n->count = ptie_random_integer(random, 2, MOST_CHANNELS);
     n->divergence = ptie_draw(random, 0, 0.6);
     float pitch = 2 * lip / (float)n->count, fill = ptie_draw(random, 0.12, 0.4);
-    float spread = ptie_draw(random, 0, 0.35) * pitch,
-          decay = ptie_draw_log(random, 0.5, 5) * axes->end;
-    float uneven = ptie_draw(random, 0, 0.6),
-          beads = ptie_chance(random, 0.3) ? ptie_draw(random, 0.2, 0.6) : 0;
+    float spread = ptie_draw(random, 0, 0.35) * pitch;
+    float decay = ptie_draw_log(random, 0.5, 5) * axes->end;
+    float uneven = ptie_draw(random, 0, 0.6);
+    float beads = ptie_chance(random, 0.3) ? ptie_draw(random, 0.2, 0.6) : 0;
     float cell = ptie_draw(random, 1.5, 4) / pitch;
     for (int i = 0; i < MOST_CHANNELS; i++) {
         channel *c = &n->channels[i];

@@ -93,7 +93,7 @@ static void draw_channels(discharge *d, ptie_random *random, const ptie_axes *ax
     for (int i = 0; i < MOST_CHANNELS; i++) {
         channel *c = &d->channels[i];
         float start = ptie_draw(random, 0.1, 0.8), reach = ptie_draw(random, 0.3, 1);
-        float away = ptie_draw(random, 0.2, 0.9) * (ptie_chance(random, 0.5) ? 1 : -1);
+        float side = ptie_chance(random, 0.5) ? 1 : -1, away = side * ptie_draw(random, 0.2, 0.9);
         float strength = ptie_draw(random, 0.25, 0.7), slim = ptie_draw(random, 0.4, 0.8);
         *c = (channel){.start = from, .end = to, .radius = radius, .strength = 1};
         if (i > 0) {
@@ -122,11 +122,11 @@ static ptie_status draw_discharge(float *map, const ptie_scene *scene, ptie_rand
 /* A spark's kernel: a hot spot that swells, drawn out along the beam, and a lobe thrown back. */
 static void draw_spark(float *map, const ptie_scene *scene, ptie_random *random,
                        const ptie_axes *axes, float height) {
-    double speed = 0.3 * ptie_speed_draw(scene, random),
-           start = ptie_random_uniform(random, 0.03, 0.12);
+    double speed = 0.3 * ptie_speed_draw(scene, random);
+    double start = ptie_random_uniform(random, 0.03, 0.12);
     double grown = start * pow(1 + 2.5 * fmod(speed * scene->time_s, 0.3) / start, 0.4);
-    float round = ptie_draw(random, 0.4, 1), lobe = ptie_draw(random, 0.5, 1.2),
-          tilt = ptie_draw(random, -0.3, 0.3);
+    float round = ptie_draw(random, 0.4, 1), lobe = ptie_draw(random, 0.5, 1.2);
+    float tilt = ptie_draw(random, -0.3, 0.3);
     float r = (float)grown, dim = height * (float)(start / grown);
     ptie_spot spots[3] = {{0, 0, r, r * round, tilt, dim},
                           {-r * lobe * 1.6f, tilt * r, 0.6f * r, 0.6f * r, 0, 0.6f * dim},
@@ -145,10 +145,9 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
 
 /* Free electrons: phi = -r_e lambda * integral of n_e, through a Gaussian channel. */
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
-    const double sqrt_two_pi = 2.50662827;
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ANY, 0.35, 0.65, 0.3);
     double electrons = ptie_random_log_uniform(random, 3e22, 3e24); /* per m^3 */
-    double column = electrons * ptie_scene_unit_m(scene) * sqrt_two_pi;
+    double column = electrons * ptie_scene_unit_m(scene) * PTIE_GAUSSIAN_DEPTH;
     double rad = ptie_electron_phase(scene->wavelength_m, column);
     discharge d = {.height = (float)rad, .depth = 1, .halo_strength = ptie_draw(random, 0, 0.3)};
     if (ptie_chance(random, 0.75)) return draw_discharge(map, scene, random, &axes, &d);

@@ -50,7 +50,8 @@ typedef struct pocket {
 
 static pocket pocket_at(const row *r, const ptie_train *train, int64_t number) {
     ptie_random own;
-    double x = ptie_train_car(train, number, r->key, &own) + r->jitter * ptie_random_normal(&own);
+    double x = ptie_train_car(train, number, r->key, &own);
+    x += r->jitter * ptie_random_normal(&own);
     float scale = ptie_draw(&own, 0.8, 1.2), strength = ptie_draw(&own, 0.6, 1);
     float down = fmaxf((float)x, 0), side = number % 2 ? 1 : -1;
     float grown = r->size + r->growth * down, birth = ptie_smoothstep((float)x / r->size + 1);
@@ -81,7 +82,7 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     return PTIE_OK;
 }
 
-/* Density of a Lamb-Oseen vortex of core radius 1 whose centre lacks `deficit` of the pressure:
+/* (F12) Density of a Lamb-Oseen vortex of core radius 1 whose centre lacks `deficit` of the pressure:
    dp/dr = rho v^2 / r with v ~ (1 - exp(-r^2)) / r, then isentropic. */
 #define VORTEX_STEPS 256
 #define VORTEX_REACH 6.0
@@ -144,10 +145,10 @@ static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *ra
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, -0.15, 0.3, 0.5);
     row r = row_draw(scene, random, &axes);
     double air = ptie_ambient_refractivity();
-    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene),
-           depth = ptie_random_uniform(random, 0.2, 1);
-    double deficit = ptie_random_uniform(random, 0.03, 0.3),
-           edge = ptie_random_uniform(random, 0.08, 0.3);
+    double path = ptie_scene_rad(scene);
+    double depth = ptie_random_uniform(random, 0.2, 1);
+    double deficit = ptie_random_uniform(random, 0.03, 0.3);
+    double edge = ptie_random_uniform(random, 0.08, 0.3);
     double warm = PTIE_AMBIENT_K / ptie_random_uniform(random, 330, 1000);
     double other =
         ptie_gas_refractivity(ptie_gas_get(PTIE_CARBON_DIOXIDE), PTIE_AMBIENT_PA, PTIE_AMBIENT_K);

@@ -10,6 +10,7 @@ typedef struct island {
     ptie_turbulence turbulence;
     float level, edge;      /* of the field that becomes an island; softness of its shore */
     float relief;           /* share of the field's own relief on the islands */
+    float ground;           /* height of the disc they stand on */
     float radius, softness; /* of the window, units */
     float tall;             /* 1, or rad per unit of the field */
 } island;
@@ -25,7 +26,7 @@ static float island_at(const void *flow, float x, float y) {
     if (inside < 1e-4f) return 0;
     ptie_turbulence_at(&o->turbulence, x, y, field);
     float shore = ptie_smoothstep((field[0] - o->level) / o->edge);
-    return inside * shore * (1 + o->relief * field[1]);
+    return inside * (o->ground + shore * fmaxf(0, 1 + o->relief * field[1]));
 }
 
 static float screen_at(const void *flow, float x, float y) {
@@ -38,8 +39,8 @@ static float screen_at(const void *flow, float x, float y) {
 static ptie_status draw_field(island *o, const ptie_scene *scene, ptie_random *random, double low,
                               double high) {
     double outer = ptie_random_log_uniform(random, low, high);
-    double inner = ptie_random_log_uniform(random, 0.04, 0.3),
-           speed = ptie_speed_draw(scene, random);
+    double inner = ptie_random_log_uniform(random, 0.04, 0.3);
+    double speed = ptie_speed_draw(scene, random);
     ptie_turbulence_params params = ptie_turbulence_draw(scene, random, outer, inner, speed);
     return ptie_turbulence_create(&o->turbulence, &params);
 }
@@ -51,11 +52,11 @@ static void draw_bodies(float *map, const ptie_scene *scene, ptie_random *random
     double speed = 0.5 * ptie_speed_draw(scene, random);
     ptie_clear(map, scene);
     for (int32_t i = 0; i < count; i++) {
-        double span = (double)(axes->end - axes->start) + 0.4,
-               x = ptie_random_uniform(random, 0, span);
-        double pace = ptie_random_uniform(random, 0.4, 1) * speed;
-        ptie_spot spot = {.y = ptie_draw(random, (double)-axes->side, (double)axes->side)};
-        spot.x = axes->start - 0.2f + (float)fmod(x + pace * scene->time_s, span);
+        ptie_spot spot;
+        ptie_place_draw(scene, random, axes, 0.9, &spot.x, &spot.y);
+        double way = ptie_random_uniform(random, 0.4, 1) * speed * scene->time_s;
+        double span = (double)(axes->end - axes->start) + 0.2; /* then it comes in again */
+        spot.x = axes->start + (float)fmod((double)(spot.x - axes->start) + way, span);
         spot.along = ptie_draw_log(random, 0.02, 0.2);
         spot.across = spot.along * ptie_draw_log(random, 0.35, 1);
         spot.angle = ptie_draw(random, 0, 3.1416);
@@ -66,8 +67,10 @@ static void draw_bodies(float *map, const ptie_scene *scene, ptie_random *random
 
 static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ANY, 0.35, 0.65, 0.3);
-    island o = {.level = ptie_draw(random, -0.3, 0.8), .edge = ptie_draw_log(random, 0.1, 2.5)};
+    island o = {.level = ptie_draw(random, -0.3, 0.8)};
+    o.edge = ptie_draw_log(random, 0.1, 2.5);
     o.relief = ptie_draw(random, 0, 0.4);
+    o.ground = ptie_draw(random, 0.01, 0.15);
     o.radius = ptie_draw(random, 0.25, 0.8);
     o.softness = ptie_draw(random, 0.05, 0.25);
     if (ptie_chance(random, 0.35)) {

@@ -44,8 +44,21 @@ ptie_axes ptie_axes_draw(const ptie_scene *scene, ptie_random *random, ptie_head
         .pixel = (float)(1 / unit_px),
         .start = (float)(-place * along_px / unit_px),
         .end = (float)((1 - place) * along_px / unit_px),
-        .side = (float)(across_px / unit_px / 2),
     };
+}
+
+/* Flow coordinates of a point of the image, px. */
+static void to_flow(const ptie_axes *axes, float column, float row, float *x, float *y) {
+    float dx = (column - axes->origin_x) * axes->pixel, dy = (row - axes->origin_y) * axes->pixel;
+    *x = axes->cosine * dx + axes->sine * dy;
+    *y = axes->mirror * (axes->cosine * dy - axes->sine * dx);
+}
+
+void ptie_place_draw(const ptie_scene *scene, ptie_random *random, const ptie_axes *axes,
+                     double share, float *x, float *y) {
+    double across = ptie_random_uniform(random, 0.5 - share / 2, 0.5 + share / 2);
+    double down = ptie_random_uniform(random, 0.5 - share / 2, 0.5 + share / 2);
+    to_flow(axes, (float)(across * (scene->width - 1)), (float)(down * (scene->height - 1)), x, y);
 }
 
 double ptie_scene_unit_m(const ptie_scene *scene) {
@@ -56,17 +69,16 @@ double ptie_speed_draw(const ptie_scene *scene, ptie_random *random) {
     return ptie_random_log_uniform(random, 2, 12) / ptie_scene_unit_m(scene);
 }
 
-double ptie_scene_wavenumber(const ptie_scene *scene) {
-    return 2 * PI / scene->wavelength_m;
+double ptie_scene_rad(const ptie_scene *scene) {
+    return 2 * PI / scene->wavelength_m * ptie_scene_unit_m(scene);
 }
 
 void ptie_paint(float *map, const ptie_scene *scene, const ptie_axes *axes, ptie_point point,
                 const void *flow) {
     float step_x = axes->cosine * axes->pixel, step_y = -axes->mirror * axes->sine * axes->pixel;
     for (int32_t y = 0; y < scene->height; y++) {
-        float dx = -axes->origin_x * axes->pixel, dy = ((float)y - axes->origin_y) * axes->pixel;
-        float left_x = axes->cosine * dx + axes->sine * dy;
-        float left_y = axes->mirror * (axes->cosine * dy - axes->sine * dx);
+        float left_x, left_y;
+        to_flow(axes, 0, (float)y, &left_x, &left_y);
         float *row = map + (size_t)y * (size_t)scene->width;
         for (int32_t x = 0; x < scene->width; x++)
             row[x] = point(flow, left_x + step_x * (float)x, left_y + step_y * (float)x);
@@ -113,8 +125,8 @@ typedef struct spot_form {
 } spot_form;
 
 static spot_form form_of(const ptie_axes *axes, const ptie_spot *spot) {
-    double along = (double)(spot->along / axes->pixel),
-           across = (double)(spot->across / axes->pixel);
+    double along = (double)(spot->along / axes->pixel);
+    double across = (double)(spot->across / axes->pixel);
     double turn = (double)(axes->mirror * spot->angle);
     double flow = atan2((double)axes->sine, (double)axes->cosine) + turn;
     double c = cos(flow), s = sin(flow), p = 1 / (along * along), q = 1 / (across * across);

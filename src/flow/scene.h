@@ -20,7 +20,6 @@ typedef struct ptie_axes {
     float mirror;             /* +1 or -1: handedness */
     float pixel;              /* one px in units */
     float start, end;         /* x where the frame begins and ends along the flow */
-    float side;               /* half the frame across the flow */
 } ptie_axes;
 
 typedef enum ptie_heading {
@@ -35,13 +34,18 @@ typedef enum ptie_heading {
 ptie_axes ptie_axes_draw(const ptie_scene *scene, ptie_random *random, ptie_heading heading,
                          double origin_low, double origin_high, double across);
 
+/* Flow coordinates of a random point in the middle `share` of the frame. */
+void ptie_place_draw(const ptie_scene *scene, ptie_random *random, const ptie_axes *axes,
+                     double share, float *x, float *y);
+
 /* Length of a unit in m. */
 double ptie_scene_unit_m(const ptie_scene *scene);
 /* A convection speed in units per second: 2 .. 12 m/s, which at 25,000 frames/s and 20 um pixels is
    4 .. 24 px per frame. */
 double ptie_speed_draw(const ptie_scene *scene, ptie_random *random);
-/* Wave number 2 pi / lambda of the light, rad/m. */
-double ptie_scene_wavenumber(const ptie_scene *scene);
+/* Phase (rad) of a path of one unit where n - 1 exceeds the air's by 1: 2 pi / lambda times the
+ * unit. */
+double ptie_scene_rad(const ptie_scene *scene);
 
 /* Value of a flow at a point of its coordinates. */
 typedef float (*ptie_point)(const void *flow, float x, float y);

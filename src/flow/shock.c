@@ -17,8 +17,8 @@ typedef struct shock {
     shock_kind kind;
     int count;
     float x[MOST_SHOCKS], y[MOST_SHOCKS], radius[MOST_SHOCKS], height[MOST_SHOCKS];
-    float thickness, tail,
-        dip; /* of a front; length of what follows it, units; share of Friedlander's dip */
+    float thickness, tail;  /* of a front; length of what follows it, units */
+    float dip;              /* share of Friedlander's negative phase */
     float slope, standoff;  /* bow: of its far flanks; from the origin to its nose, units */
     float half, cell, fade; /* lattice: half-height, length of a cell, fading, units */
 } shock;
@@ -73,8 +73,7 @@ static void draw_blasts(shock *s, const ptie_scene *scene, ptie_random *random,
     s->count = ptie_random_integer(random, 1, MOST_SHOCKS);
     for (int i = 0; i < MOST_SHOCKS; i++) {
         double start = ptie_random_uniform(random, 0.12, 0.6);
-        s->x[i] = ptie_draw(random, 0, (double)axes->end);
-        s->y[i] = ptie_draw(random, (double)-axes->side, (double)axes->side);
+        ptie_place_draw(scene, random, axes, 1, &s->x[i], &s->y[i]);
         s->height[i] = ptie_draw(random, 0.4, 1);
         s->radius[i] = (float)blast_radius(start, speed, 0.75, scene->time_s);
     }
@@ -82,8 +81,8 @@ static void draw_blasts(shock *s, const ptie_scene *scene, ptie_random *random,
 
 /* Standing shocks breathe by a few percent, a few thousand times per second. */
 static double beat_draw(const ptie_scene *scene, ptie_random *random) {
-    double amplitude = ptie_random_uniform(random, 0.02, 0.1),
-           phase = ptie_random_uniform(random, 0, 6.283185307);
+    double amplitude = ptie_random_uniform(random, 0.02, 0.1);
+    double phase = ptie_random_uniform(random, 0, 6.283185307);
     double rate_hz = ptie_random_log_uniform(random, 500, 5000);
     return amplitude * sin(6.283185307179586 * fmod(rate_hz * scene->time_s, 1) + phase);
 }
@@ -169,10 +168,9 @@ static float bow_at(const void *flow, float x, float y) {
 
 static void draw_bow(float *map, const ptie_scene *scene, ptie_random *random,
                      const ptie_axes *axes, double rad, double beat) {
-    bow_shock b = {.standoff = ptie_draw(random, 0.05, 0.2),
-                   .mach = ptie_draw(random, 1.3, 3),
-                   .rad = (float)rad,
-                   .edge = 0.7f * axes->pixel};
+    bow_shock b = {.rad = (float)rad, .edge = 0.7f * axes->pixel};
+    b.standoff = ptie_draw(random, 0.05, 0.2);
+    b.mach = ptie_draw(random, 1.3, 3);
     b.tail = b.standoff * ptie_draw(random, 1, 6);
     b.slope = sqrtf(b.mach * b.mach - 1); /* far out it is a Mach wave: dx / dy = cot(mu) */
     b.standoff *= (float)(1 + beat);
@@ -211,7 +209,7 @@ static void draw_wedge(float *map, const ptie_scene *scene, ptie_random *random,
 
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_ACROSS, 0.15, 0.4, 0.4);
-    double path = ptie_scene_wavenumber(scene) * ptie_scene_unit_m(scene);
+    double path = ptie_scene_rad(scene);
     double rad = path * ptie_ambient_refractivity(), depth = ptie_random_uniform(random, 0.05, 0.4);
     double beat = beat_draw(scene, random), choice = ptie_random_uniform(random, 0, 1);
     if (choice < 0.55)

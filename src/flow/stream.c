@@ -7,12 +7,10 @@
 
 ptie_status ptie_stream_draw(ptie_stream *stream, const ptie_scene *scene, ptie_random *random,
                              const ptie_stream_ranges *ranges, double length) {
-    *stream = (ptie_stream){
-        .radius = ptie_draw_log(random, ranges->radius_low, ranges->radius_high),
-        .spread = ptie_draw(random, ranges->spread_low, ranges->spread_high),
-        .folding = ptie_draw(random, ranges->folding_low, ranges->folding_high),
-    };
-    stream->reach = 6;
+    *stream = (ptie_stream){.reach = 6};
+    stream->radius = ptie_draw_log(random, ranges->radius_low, ranges->radius_high);
+    stream->spread = ptie_draw(random, ranges->spread_low, ranges->spread_high);
+    stream->folding = ptie_draw(random, ranges->folding_low, ranges->folding_high);
     stream->onset = stream->radius * ptie_draw(random, 2, 12);
     stream->sway = ptie_chance(random, 0.5) ? ptie_draw(random, 0.05, 0.35) : 0;
     stream->sway_wave = ptie_draw(random, 0.2, 0.9) / stream->radius;
