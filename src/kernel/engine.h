@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What the layers above compute with: threads and a table of kernels.  A ptie_ctx is one of these. */
+/* What the layers above compute with: threads and a table of kernels.  A ptie_ctx is one of these.
+ */
 #ifndef PTIE_KERNEL_ENGINE_H
 #define PTIE_KERNEL_ENGINE_H
 

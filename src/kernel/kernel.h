@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Micro-kernels: the inner loops of the network.  They know pointers, strides and sizes, nothing else;
- * they cannot fail.  One list, kernels.inc, drives declarations, tables and tests.
+/* Micro-kernels: the inner loops of the network.  They know pointers, strides and sizes, nothing
+ * else; they cannot fail.  One list, kernels.inc, drives declarations, tables and tests.
  *
- * Tensors are planes with a halo: every row is followed by at least one zero column and every plane is
- * preceded and followed by a zero row, so that a 3x3 window needs no edge cases.  Kernels store to the
- * interior only, which keeps the halo zero for ever; they may read up to PTIE_MAP_OVERREAD floats past the
- * last pixel of a row or the first pixel's left neighbour, and what they read there never matters as long
- * as it is finite.
+ * Tensors are planes with a halo: every row is followed by at least one zero column and every plane
+ * is preceded and followed by a zero row, so that a 3x3 window needs no edge cases.  Kernels store
+ * to the interior only, which keeps the halo zero for ever; they may read up to PTIE_MAP_OVERREAD
+ * floats past the last pixel of a row or the first pixel's left neighbour, and what they read there
+ * never matters as long as it is finite.
  */
 #ifndef PTIE_KERNEL_KERNEL_H
 #define PTIE_KERNEL_KERNEL_H
@@ -26,8 +26,8 @@ typedef struct ptie_map {
     ptrdiff_t row, plane;            /* floats from one row, one channel, to the next */
 } ptie_map;
 
-/* Layout of a fresh tensor: `data` is NULL.  Rows are multiples of 64 bytes, planes are not multiples of
-   4 KiB (they would compete for the same cache lines). */
+/* Layout of a fresh tensor: `data` is NULL.  Rows are multiples of 64 bytes, planes are not
+   multiples of 4 KiB (they would compete for the same cache lines). */
 ptie_map ptie_map_make(int32_t channels, int32_t height, int32_t width);
 /* Floats of its block, halo and overread included; a zeroed block has a zero halo. */
 size_t ptie_map_floats(const ptie_map *map);
@@ -45,15 +45,17 @@ void ptie_map_store(float *image, const ptie_map *map);
 typedef struct ptie_norm {
     float scale, shift;      /* gamma / std, beta - mean * scale */
     float mean, inverse_std; /* xhat = (z - mean) * inverse_std */
-    float mean_g, mean_gx;   /* backward: batch means of g and g * xhat, g = gradient behind the ReLU */
+    float mean_g,
+        mean_gx; /* backward: batch means of g and g * xhat, g = gradient behind the ReLU */
 } ptie_norm;
 
-/* 3x3 weights in the order the kernel reads them: (O/8, I, 3, 3, 8), zero where O is not a multiple of 8. */
+/* 3x3 weights in the order the kernel reads them: (O/8, I, 3, 3, 8), zero where O is not a multiple
+ * of 8. */
 #define PTIE_CONV_BLOCK 8
 size_t ptie_conv3x3_packed(int32_t out_channels, int32_t in_channels); /* floats */
 /* weights (O, I, 3, 3); scale per output channel or NULL. */
-void ptie_conv3x3_pack(float *packed, const float *weights, int32_t out_channels, int32_t in_channels,
-                       const float *scale);
+void ptie_conv3x3_pack(float *packed, const float *weights, int32_t out_channels,
+                       int32_t in_channels, const float *scale);
 /* The weights of the adjoint, which maps O channels to I: transposed and turned by 180 degrees. */
 void ptie_conv3x3_pack_adjoint(float *packed, const float *weights, int32_t out_channels,
                                int32_t in_channels);

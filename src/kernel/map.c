@@ -12,7 +12,8 @@ ptie_map ptie_map_make(int32_t channels, int32_t height, int32_t width) {
     ptrdiff_t row = ((ptrdiff_t)width + 1 + LINE - 1) / LINE * LINE;
     ptrdiff_t plane = ((ptrdiff_t)height + 2) * row;
     if (plane % PAGE == 0) plane += LINE;
-    return (ptie_map){.channels = channels, .height = height, .width = width, .row = row, .plane = plane};
+    return (ptie_map){
+        .channels = channels, .height = height, .width = width, .row = row, .plane = plane};
 }
 
 /* Floats before pixel (0, 0): the top halo row, and the corner to its left. */
@@ -44,13 +45,15 @@ ptie_map ptie_map_rows(ptie_map map, int32_t first, int32_t count) {
 void ptie_map_load(const ptie_map *map, const float *image) {
     for (int32_t c = 0; c < map->channels; c++)
         for (int32_t y = 0; y < map->height; y++, image += map->width)
-            memcpy(map->data + c * map->plane + y * map->row, image, (size_t)map->width * sizeof *image);
+            memcpy(map->data + c * map->plane + y * map->row, image,
+                   (size_t)map->width * sizeof *image);
 }
 
 void ptie_map_store(float *image, const ptie_map *map) {
     for (int32_t c = 0; c < map->channels; c++)
         for (int32_t y = 0; y < map->height; y++, image += map->width)
-            memcpy(image, map->data + c * map->plane + y * map->row, (size_t)map->width * sizeof *image);
+            memcpy(image, map->data + c * map->plane + y * map->row,
+                   (size_t)map->width * sizeof *image);
 }
 
 void ptie_map_clear_halo(const ptie_map *map) {

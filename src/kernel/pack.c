@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Order of the 3x3 weights: the eight output channels a kernel computes together lie side by side. */
+/* Order of the 3x3 weights: the eight output channels a kernel computes together lie side by side.
+ */
 #include <string.h>
 
 #include "kernel/kernel.h"
@@ -15,8 +16,8 @@ static float *filter(float *packed, int32_t out, int32_t in, int32_t in_channels
     return packed + block * 9 * PTIE_CONV_BLOCK + out % PTIE_CONV_BLOCK;
 }
 
-void ptie_conv3x3_pack(float *packed, const float *weights, int32_t out_channels, int32_t in_channels,
-                       const float *scale) {
+void ptie_conv3x3_pack(float *packed, const float *weights, int32_t out_channels,
+                       int32_t in_channels, const float *scale) {
     memset(packed, 0, ptie_conv3x3_packed(out_channels, in_channels) * sizeof *packed);
     for (int32_t o = 0; o < out_channels; o++)
         for (int32_t i = 0; i < in_channels; i++, weights += 9) {

@@ -4,11 +4,11 @@
 
 #include <math.h>
 
-void ptie_adamw_apply(float *values, float *first, float *second, const float *gradient, size_t count,
-                      const ptie_adamw *adamw, uint64_t step) {
+void ptie_adamw_apply(float *values, float *first, float *second, const float *gradient,
+                      size_t count, const ptie_adamw *adamw, uint64_t step) {
     const double t = (double)step;
-    const float rate = (float)(adamw->learning_rate * sqrt(1 - pow(adamw->beta2, t)) /
-                               (1 - pow(adamw->beta1, t)));
+    const float rate =
+        (float)(adamw->learning_rate * sqrt(1 - pow(adamw->beta2, t)) / (1 - pow(adamw->beta1, t)));
     const float keep = (float)(1 - adamw->learning_rate * adamw->weight_decay);
     const float beta1 = (float)adamw->beta1, rest1 = (float)(1 - adamw->beta1);
     const float beta2 = (float)adamw->beta2, rest2 = (float)(1 - adamw->beta2);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Backward through the network, docs/math.md (N1)-(N7).  A tensor's gradient is overwritten by the first
- * operation that brings it; the maximum, which reads a skip that the decoder has read too, adds.
+/* Backward through the network, docs/math.md (N1)-(N7).  A tensor's gradient is overwritten by the
+ * first operation that brings it; the maximum, which reads a skip that the decoder has read too,
+ * adds.
  */
 #include <string.h>
 
@@ -47,7 +48,8 @@ static void backward_op(const ptie_stepper *stepper, const ptie_op *op, size_t i
         if (stepper->model->params.output == PTIE_SIGMOID) sigmoid_backward(&out_grad, &out);
         kernels->conv1x1_weights(sample->weights, sample->weights + in.channels, &out_grad, &in);
         /* With one output the adjoint has the same weights in the same order. */
-        kernels->conv1x1(&in_grad, &out_grad, ptie_model_values(stepper->model, op, PTIE_WEIGHT), NULL);
+        kernels->conv1x1(&in_grad, &out_grad, ptie_model_values(stepper->model, op, PTIE_WEIGHT),
+                         NULL);
         break;
     }
 }
@@ -71,7 +73,8 @@ static void unconvolve(const ptie_stepper *stepper, const ptie_op *op, ptie_samp
 }
 
 /* Sums that BatchNorm's gradient needs from the whole batch. */
-static void sum_gradients(const ptie_stepper *stepper, const ptie_op *op, ptie_sample_state *sample) {
+static void sum_gradients(const ptie_stepper *stepper, const ptie_op *op,
+                          ptie_sample_state *sample) {
     const ptie_map z = ptie_layout_map(&stepper->convs, sample->convs, op->conv);
     const ptie_map grad = ptie_layout_view(&stepper->tensors, sample->gradients, op->out);
     memset(sample->sums, 0, 2 * (size_t)z.channels * sizeof *sample->sums);
@@ -88,7 +91,8 @@ ptie_status ptie_backward_section(void *context, size_t index, int32_t worker) {
         start(stepper, index, worker);
     else
         unconvolve(stepper, ptie_stepper_conv(stepper, section), sample);
-    for (int32_t i = ptie_section_last(stepper, section); i-- > ptie_section_first(stepper, section);)
+    for (int32_t i = ptie_section_last(stepper, section);
+         i-- > ptie_section_first(stepper, section);)
         backward_op(stepper, &graph->ops[i], index);
     if (section > 0) sum_gradients(stepper, ptie_stepper_conv(stepper, section - 1), sample);
     return PTIE_OK;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Inference: BatchNorm folded into the convolutions, one frame on one thread in the caller's memory. */
+/* Inference: BatchNorm folded into the convolutions, one frame on one thread in the caller's
+ * memory. */
 #include "nn/denoiser.h"
 
 #include <math.h>
@@ -7,7 +8,7 @@
 #include "base/image.h"
 #include "base/memory.h"
 
-/* Folds the running statistics into weights and bias (N8). */
+/* Folds the running statistics into weights and bias (N2). */
 static void fold(ptie_denoiser *denoiser, const ptie_model *model, const ptie_op *op) {
     const float *gamma = ptie_model_values(model, op, PTIE_GAMMA);
     const float *beta = ptie_model_values(model, op, PTIE_BETA);
@@ -31,7 +32,8 @@ static size_t slice_block(ptie_denoiser *denoiser, void *block) {
         if (op->kind == PTIE_OP_HEAD)
             denoiser->head = ptie_slice(&slicer, (size_t)in + 1, sizeof(float));
         if (op->kind != PTIE_OP_CONV) continue;
-        denoiser->packed[op->conv] = ptie_slice(&slicer, ptie_conv3x3_packed(out, in), sizeof(float));
+        denoiser->packed[op->conv] =
+            ptie_slice(&slicer, ptie_conv3x3_packed(out, in), sizeof(float));
         denoiser->bias[op->conv] = ptie_slice(&slicer, (size_t)out, sizeof(float));
     }
     return slicer.used;
@@ -48,8 +50,8 @@ static void copy_weights(ptie_denoiser *denoiser, const ptie_model *model) {
     }
 }
 
-ptie_status ptie_nn_denoiser(ptie_denoiser **out, const ptie_engine *engine, const ptie_model *model,
-                             int32_t width, int32_t height) {
+ptie_status ptie_nn_denoiser(ptie_denoiser **out, const ptie_engine *engine,
+                             const ptie_model *model, int32_t width, int32_t height) {
     const int32_t unit = 1 << (model->params.levels - 1);
     ptie_denoiser *denoiser;
     *out = NULL;
@@ -133,7 +135,8 @@ static void run_op(const ptie_denoiser *denoiser, const ptie_op *op, float *bloc
 ptie_status ptie_nn_denoise(const ptie_denoiser *denoiser, float *clean, const float *noisy,
                             void *scratch) {
     const ptie_graph *graph = &denoiser->graph;
-    PTIE_TRY(ptie_image_finite(noisy, denoiser->width, denoiser->height * graph->input.channels, "noisy"));
+    PTIE_TRY(ptie_image_finite(noisy, denoiser->width, denoiser->height * graph->input.channels,
+                               "noisy"));
     float *block = ptie_denoise_slice(denoiser, scratch).tensors;
     const ptie_map input = ptie_layout_view(&denoiser->tensors, block, graph->input);
     ptie_map_clear_halo(&input);

@@ -13,7 +13,8 @@ void ptie_dropout(const ptie_stepper *stepper, const ptie_map *map, size_t sampl
     const float kept = (float)(1 / (1 - rate));
     const uint64_t largest_batch = 1024;
     ptie_random random;
-    ptie_random_init(&random, stepper->seed, PTIE_STREAM_DROPOUT, stepper->step * largest_batch + sample);
+    ptie_random_init(&random, stepper->seed, PTIE_STREAM_DROPOUT,
+                     stepper->step * largest_batch + sample);
     for (int32_t c = 0; c < map->channels; c++)
         for (int32_t y = 0; y < map->height; y++) {
             float *row = map->data + c * map->plane + y * map->row;
@@ -73,7 +74,8 @@ ptie_status ptie_forward_section(void *context, size_t index, int32_t worker) {
     } else {
         activate(stepper, ptie_stepper_conv(stepper, section - 1), sample);
     }
-    for (int32_t i = ptie_section_first(stepper, section); i < ptie_section_last(stepper, section); i++)
+    for (int32_t i = ptie_section_first(stepper, section); i < ptie_section_last(stepper, section);
+         i++)
         forward_op(stepper, &graph->ops[i], index);
     if (section < graph->conv_count) convolve(stepper, ptie_stepper_conv(stepper, section), sample);
     return PTIE_OK;

@@ -37,7 +37,8 @@ static void add_param(ptie_graph *graph, const char *stage, const char *name, bo
 }
 
 /* `number` 1 or 2: which of the two convolutions of its stage. */
-static void add_conv(ptie_graph *graph, const char *stage, int number, ptie_view in, ptie_view out) {
+static void add_conv(ptie_graph *graph, const char *stage, int number, ptie_view in,
+                     ptie_view out) {
     static const char *const norms[] = {"weight", "bias", "running_mean", "running_var"};
     add_op(graph, PTIE_OP_CONV, in, out)->conv = graph->conv_count++;
     char name[24];
@@ -49,7 +50,8 @@ static void add_conv(ptie_graph *graph, const char *stage, int number, ptie_view
     }
 }
 
-static void add_stage(ptie_graph *graph, const char *stage, int32_t level, ptie_view in, ptie_view out) {
+static void add_stage(ptie_graph *graph, const char *stage, int32_t level, ptie_view in,
+                      ptie_view out) {
     ptie_view middle = add_tensor(graph, out.channels, level);
     add_conv(graph, stage, 1, in, middle);
     add_conv(graph, stage, 2, middle, out);
@@ -111,21 +113,25 @@ static void place_map(ptie_layout *layout, int32_t which, ptie_map map) {
     layout->floats += (ptie_map_floats(&map) + line - 1) / line * line;
 }
 
-void ptie_layout_tensors(ptie_layout *layout, const ptie_graph *graph, int32_t height, int32_t width) {
+void ptie_layout_tensors(ptie_layout *layout, const ptie_graph *graph, int32_t height,
+                         int32_t width) {
     *layout = (ptie_layout){0};
     for (int32_t t = 0; t < graph->tensor_count; t++) {
         ptie_tensor tensor = graph->tensors[t];
-        place_map(layout, t, ptie_map_make(tensor.channels, height >> tensor.level, width >> tensor.level));
+        place_map(layout, t,
+                  ptie_map_make(tensor.channels, height >> tensor.level, width >> tensor.level));
     }
 }
 
-void ptie_layout_convs(ptie_layout *layout, const ptie_graph *graph, int32_t height, int32_t width) {
+void ptie_layout_convs(ptie_layout *layout, const ptie_graph *graph, int32_t height,
+                       int32_t width) {
     *layout = (ptie_layout){0};
     for (int32_t i = 0; i < graph->op_count; i++) {
         const ptie_op *op = &graph->ops[i];
         if (op->kind != PTIE_OP_CONV) continue;
         int32_t level = graph->tensors[op->out.tensor].level;
-        place_map(layout, op->conv, ptie_map_make(op->out.channels, height >> level, width >> level));
+        place_map(layout, op->conv,
+                  ptie_map_make(op->out.channels, height >> level, width >> level));
     }
 }
 
@@ -134,5 +140,6 @@ ptie_map ptie_layout_map(const ptie_layout *layout, float *block, int32_t which)
 }
 
 ptie_map ptie_layout_view(const ptie_layout *layout, float *block, ptie_view view) {
-    return ptie_map_channels(ptie_layout_map(layout, block, view.tensor), view.first, view.channels);
+    return ptie_map_channels(ptie_layout_map(layout, block, view.tensor), view.first,
+                             view.channels);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The network as data.  One list of operations, made from the parameters of the family, is what forward,
- * backward, inference, parameter names and files all walk along.
+/* The network as data.  One list of operations, made from the parameters of the family, is what
+ * forward, backward, inference, parameter names and files all walk along.
  *
  *     enc1 ──────────────────────────────── skip ─┐
  *       └ pool ─ enc2 ───────────── skip ─┐       │
@@ -37,8 +37,14 @@ typedef struct ptie_view {
 } ptie_view;
 
 /* Parameters of an operation, counted from ptie_op.params. */
-enum { PTIE_WEIGHT = 0, PTIE_GAMMA = 1, PTIE_BETA = 2, PTIE_MEAN = 3, PTIE_VARIANCE = 4, /* CONV */
-       PTIE_BIAS = 1 /* HEAD */ };
+enum {
+    PTIE_WEIGHT = 0,
+    PTIE_GAMMA = 1,
+    PTIE_BETA = 2,
+    PTIE_MEAN = 3,
+    PTIE_VARIANCE = 4, /* CONV */
+    PTIE_BIAS = 1      /* HEAD */
+};
 
 typedef struct ptie_op {
     ptie_op_kind kind;
@@ -81,7 +87,8 @@ typedef struct ptie_layout {
 } ptie_layout;
 
 /* One place for every tensor of the graph. */
-void ptie_layout_tensors(ptie_layout *layout, const ptie_graph *graph, int32_t height, int32_t width);
+void ptie_layout_tensors(ptie_layout *layout, const ptie_graph *graph, int32_t height,
+                         int32_t width);
 /* One place for the result of every convolution before its normalisation. */
 void ptie_layout_convs(ptie_layout *layout, const ptie_graph *graph, int32_t height, int32_t width);
 

@@ -8,14 +8,16 @@
 
 enum { WINDOW = PTIE_SSIM_WINDOW, MARGIN = WINDOW - 1, ROW_SLACK = 64 };
 
-/* Weight of a pixel's squared error (paper Eq. 10): 1 in the background, 5 where the flow is densest. */
+/* Weight of a pixel's squared error (paper Eq. 10): 1 in the background, 5 where the flow is
+ * densest. */
 static float pixel_weight(float clean) {
     return 1 + 4 * clean;
 }
 
 /* L1 and WMSE (L1), (L2).  gradient may be NULL. */
 static void measure_pixels(ptie_loss_parts *parts, float *gradient, const float *estimate,
-                           const float *clean, size_t count, ptie_loss_weights weights, double scale) {
+                           const float *clean, size_t count, ptie_loss_weights weights,
+                           double scale) {
     double l1 = 0, wmse = 0, mse = 0;
     for (size_t i = 0; i < count; i++) {
         float d = estimate[i] - clean[i], square = d * d;
@@ -36,7 +38,8 @@ static void measure_pixels(ptie_loss_parts *parts, float *gradient, const float 
     }
 }
 
-/* What SSIM needs: windowed means of x (estimate), y (clean) and their products, valid windows only. */
+/* What SSIM needs: windowed means of x (estimate), y (clean) and their products, valid windows
+ * only. */
 typedef struct ssim_maps {
     float *x, *y, *xx, *yy, *xy; /* (H-10, W-10) */
     float *image;                /* (H, W): a product, or a map spread back */
@@ -76,8 +79,8 @@ static const float *product(float *out, const float *a, const float *b, size_t c
     return out;
 }
 
-/* SSIM of every window (L3) and its derivatives: x, xx, xy become `scale` times those with respect to the
-   windowed means of x, x^2 and x y; yy becomes the SSIM itself. */
+/* SSIM of every window (L3) and its derivatives: x, xx, xy become `scale` times those with respect
+   to the windowed means of x, x^2 and x y; yy becomes the SSIM itself. */
 static void differentiate_ssim(const ssim_maps *maps, size_t count, float scale) {
     const float c1 = 0.01f * 0.01f, c2 = 0.03f * 0.03f;
     for (size_t i = 0; i < count; i++) {
@@ -93,8 +96,9 @@ static void differentiate_ssim(const ssim_maps *maps, size_t count, float scale)
 }
 
 /* Mean SSIM; adds scale times its gradient. */
-static double measure_ssim(const ptie_kernels *kernels, float *gradient, const float *x, const float *y,
-                           int32_t width, int32_t height, double scale, const ssim_maps *maps) {
+static double measure_ssim(const ptie_kernels *kernels, float *gradient, const float *x,
+                           const float *y, int32_t width, int32_t height, double scale,
+                           const ssim_maps *maps) {
     const size_t count = (size_t)width * (size_t)height;
     const size_t windows = (size_t)(width - MARGIN) * (size_t)(height - MARGIN);
     float taps[WINDOW];
@@ -124,14 +128,17 @@ void ptie_loss_evaluate(const ptie_kernels *kernels, ptie_loss_parts *parts, flo
                         ptie_loss_weights weights, double scale, void *scratch) {
     assert(width >= WINDOW && height >= WINDOW);
     const ssim_maps maps = slice_maps(scratch, width, height);
-    measure_pixels(parts, gradient, estimate, clean, (size_t)width * (size_t)height, weights, scale);
-    parts->ssim = measure_ssim(kernels, gradient, estimate, clean, width, height, -scale * weights.ssim,
-                               &maps);
-    parts->loss = weights.l1 * parts->l1 + weights.ssim * (1 - parts->ssim) + weights.mse * parts->wmse;
+    measure_pixels(parts, gradient, estimate, clean, (size_t)width * (size_t)height, weights,
+                   scale);
+    parts->ssim = measure_ssim(kernels, gradient, estimate, clean, width, height,
+                               -scale * weights.ssim, &maps);
+    parts->loss =
+        weights.l1 * parts->l1 + weights.ssim * (1 - parts->ssim) + weights.mse * parts->wmse;
 }
 
 void ptie_loss_measure(const ptie_engine *engine, ptie_loss_parts *parts, const float *estimate,
                        const float *clean, int32_t width, int32_t height, ptie_loss_weights weights,
                        void *scratch) {
-    ptie_loss_evaluate(engine->kernels, parts, NULL, estimate, clean, width, height, weights, 1, scratch);
+    ptie_loss_evaluate(engine->kernels, parts, NULL, estimate, clean, width, height, weights, 1,
+                       scratch);
 }

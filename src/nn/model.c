@@ -12,8 +12,8 @@
 static ptie_status check_range(double value, double low, double high, const char *name,
                                ptie_status status, const char *where) {
     if (value >= low && value <= high) return PTIE_OK;
-    return PTIE_FAIL(status, "%s: %s is out of range (expected %g..%g, found %g)", where, name, low, high,
-                     value);
+    return PTIE_FAIL(status, "%s: %s is out of range (expected %g..%g, found %g)", where, name, low,
+                     high, value);
 }
 
 ptie_status ptie_nn_check(const ptie_model_params *params, ptie_status status, const char *where) {
@@ -61,7 +61,8 @@ ptie_status ptie_nn_create(ptie_model **out, const ptie_model_params *params) {
     model->params = *params;
     ptie_graph_build(&model->graph, params);
     ptie_model_describe(model);
-    ptie_status status = ptie_alloc_status(&model->values, model->graph.values, sizeof(float), "model");
+    ptie_status status =
+        ptie_alloc_status(&model->values, model->graph.values, sizeof(float), "model");
     if (status != PTIE_OK) {
         ptie_nn_free(model);
         return status;
@@ -95,7 +96,8 @@ void ptie_model_describe(ptie_model *model) {
         length += (size_t)snprintf(model->name + length, sizeof model->name - length, "-%d",
                                    params->width[i]);
     ptie_fact *fact = model->facts;
-#define FACT(name, ...) (fact->key = (name), snprintf(fact->value, sizeof fact->value, __VA_ARGS__), fact++)
+#define FACT(name, ...)                                                                            \
+    (fact->key = (name), snprintf(fact->value, sizeof fact->value, __VA_ARGS__), fact++)
     FACT("format", "ptie");
     FACT("ptie.arch", "%s", model->name);
     FACT("ptie.in_channels", "%d", params->in_channels);

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* From rad to the network's [0, 1] and back, docs/math.md (N9).
+/* From rad to the network's [0, 1] and back, docs/math.md (N8).
  *
- * The minimum and maximum of a noisy map say nothing about the scale of the clean one, so the way back is
- * fitted: the gain that makes the network's gradients match the measured ones.  The noise of TIE falls as 1/k^4
- * in power: in the values it is all clouds, in the gradients it is mild, and what the network kept decides.
+ * The minimum and maximum of a noisy map say nothing about the scale of the clean one, so the way
+ * back is fitted: the gain that makes the network's gradients match the measured ones.  The noise
+ * of TIE falls as 1/k^4 in power: in the values it is all clouds, in the gradients it is mild, and
+ * what the network kept decides.
  */
 #include <math.h>
 #include <string.h>
@@ -28,13 +29,15 @@ static void find_range(const float *map, size_t count, float *low, float *high) 
     }
 }
 
-/* Least squares of grad(measured) on grad(map), forward differences; 0 for a map without structure. */
+/* Least squares of grad(measured) on grad(map), forward differences; 0 for a map without structure.
+ */
 static double fit_gain(const float *map, const float *measured, int32_t width, int32_t height) {
     double product = 0, square = 0;
     for (int32_t y = 0; y < height; y++)
         for (int32_t x = 0; x < width; x++) {
             const size_t i = (size_t)y * (size_t)width + (size_t)x;
-            const size_t next[2] = {x + 1 < width ? i + 1 : i, y + 1 < height ? i + (size_t)width : i};
+            const size_t next[2] = {x + 1 < width ? i + 1 : i,
+                                    y + 1 < height ? i + (size_t)width : i};
             for (int axis = 0; axis < 2; axis++) {
                 double d = (double)map[next[axis]] - (double)map[i];
                 product += d * ((double)measured[next[axis]] - (double)measured[i]);
@@ -44,8 +47,8 @@ static double fit_gain(const float *map, const float *measured, int32_t width, i
     return square > 0 ? product / square : 0;
 }
 
-/* Level of the flow-free background: the 15 % quantile, which is the median of the lowest 30 %, to a
-   four-thousandth of the range. */
+/* Level of the flow-free background: the 15 % quantile, which is the median of the lowest 30 %, to
+   a four-thousandth of the range. */
 static float background_level(const float *map, size_t count) {
     enum { BINS = 4096 };
     uint32_t histogram[BINS] = {0};
@@ -63,8 +66,8 @@ static float background_level(const float *map, size_t count) {
     return (float)((double)low + ((double)bin + 0.5) / bins_per_unit);
 }
 
-ptie_status ptie_nn_denoise_rad(const ptie_denoiser *denoiser, float *clean_rad, const float *noisy_rad,
-                                int32_t polarity, void *scratch) {
+ptie_status ptie_nn_denoise_rad(const ptie_denoiser *denoiser, float *clean_rad,
+                                const float *noisy_rad, int32_t polarity, void *scratch) {
     const int32_t width = denoiser->width, height = denoiser->height;
     const size_t count = (size_t)width * (size_t)height;
     float *image = ptie_denoise_slice(denoiser, scratch).image;
@@ -78,7 +81,8 @@ ptie_status ptie_nn_denoise_rad(const ptie_denoiser *denoiser, float *clean_rad,
     }
     const float lowest = sign > 0 ? low : -high, range = high - low;
     for (size_t i = 0; i < count; i++) image[i] = (sign * noisy_rad[i] - lowest) / range;
-    /* The result may take the place of the input, so the measured map is kept as the network sees it. */
+    /* The result may take the place of the input, so the measured map is kept as the network sees
+     * it. */
     PTIE_TRY(ptie_nn_denoise(denoiser, clean_rad, image, scratch));
     const double gain = fit_gain(clean_rad, image, width, height);
     const float background = background_level(clean_rad, count);

@@ -28,12 +28,14 @@ static void slice_convs(ptie_stepper *stepper, ptie_slicer *slicer) {
         const ptie_op *op = ptie_stepper_conv(stepper, k);
         const int32_t in = op->in.channels, out = op->out.channels;
         stepper->packed[k] = ptie_slice(slicer, ptie_conv3x3_packed(out, in), sizeof(float));
-        stepper->packed_adjoint[k] = ptie_slice(slicer, ptie_conv3x3_packed(in, out), sizeof(float));
+        stepper->packed_adjoint[k] =
+            ptie_slice(slicer, ptie_conv3x3_packed(in, out), sizeof(float));
         stepper->norms[k] = ptie_slice(slicer, (size_t)out, sizeof(ptie_norm));
     }
 }
 
-static void slice_sample(const ptie_stepper *stepper, ptie_slicer *slicer, ptie_sample_state *sample) {
+static void slice_sample(const ptie_stepper *stepper, ptie_slicer *slicer,
+                         ptie_sample_state *sample) {
     const ptie_graph *graph = &stepper->model->graph;
     const size_t pixels = (size_t)stepper->height * (size_t)stepper->width;
     *sample = (ptie_sample_state){
@@ -62,7 +64,8 @@ static size_t slice_block(ptie_stepper *stepper, void *block) {
         stepper->loss_scratch[i] =
             ptie_slice(&slicer, ptie_loss_scratch(stepper->width, stepper->height), 1);
     }
-    for (int32_t n = 0; n < stepper->batch; n++) slice_sample(stepper, &slicer, &stepper->samples[n]);
+    for (int32_t n = 0; n < stepper->batch; n++)
+        slice_sample(stepper, &slicer, &stepper->samples[n]);
     return slicer.used;
 }
 
@@ -72,22 +75,25 @@ static ptie_status allocate(ptie_stepper *stepper) {
     const size_t batch = (size_t)stepper->batch;
     PTIE_TRY(ptie_alloc_status(&stepper->samples, batch, sizeof *stepper->samples, where));
     PTIE_TRY(ptie_alloc_status(&stepper->images, threads, sizeof *stepper->images, where));
-    PTIE_TRY(ptie_alloc_status(&stepper->loss_scratch, threads, sizeof *stepper->loss_scratch, where));
+    PTIE_TRY(
+        ptie_alloc_status(&stepper->loss_scratch, threads, sizeof *stepper->loss_scratch, where));
     PTIE_TRY(ptie_alloc_status(&stepper->block, slice_block(stepper, NULL), 1, where));
     slice_block(stepper, stepper->block);
     return PTIE_OK;
 }
 
 ptie_status ptie_stepper_create(ptie_stepper **out, const ptie_engine *engine, ptie_model *model,
-                                int32_t batch, int32_t width, int32_t height, ptie_loss_weights weights) {
+                                int32_t batch, int32_t width, int32_t height,
+                                ptie_loss_weights weights) {
     const ptie_graph *graph = &model->graph;
     const int32_t unit = 1 << (model->params.levels - 1);
     *out = NULL;
     if (width % unit || height % unit || width < PTIE_SSIM_WINDOW || height < PTIE_SSIM_WINDOW)
-        return PTIE_FAIL(PTIE_ESIZE,
-                         "training: sample size does not fit %s (expected multiples of %d from %d on, "
-                         "found %d x %d)",
-                         model->name, unit, PTIE_SSIM_WINDOW, width, height);
+        return PTIE_FAIL(
+            PTIE_ESIZE,
+            "training: sample size does not fit %s (expected multiples of %d from %d on, "
+            "found %d x %d)",
+            model->name, unit, PTIE_SSIM_WINDOW, width, height);
     ptie_stepper *stepper;
     PTIE_TRY(ptie_alloc_status(&stepper, 1, sizeof *stepper, "training step"));
     stepper->engine = engine;
@@ -138,12 +144,13 @@ static void pack_weights(ptie_stepper *stepper) {
         const ptie_op *op = ptie_stepper_conv(stepper, k);
         const float *weights = ptie_model_values(stepper->model, op, PTIE_WEIGHT);
         ptie_conv3x3_pack(stepper->packed[k], weights, op->out.channels, op->in.channels, NULL);
-        ptie_conv3x3_pack_adjoint(stepper->packed_adjoint[k], weights, op->out.channels, op->in.channels);
+        ptie_conv3x3_pack_adjoint(stepper->packed_adjoint[k], weights, op->out.channels,
+                                  op->in.channels);
     }
 }
 
-ptie_status ptie_stepper_gradients(ptie_stepper *stepper, int32_t count, uint64_t seed, uint64_t step,
-                                   ptie_loss_parts *parts) {
+ptie_status ptie_stepper_gradients(ptie_stepper *stepper, int32_t count, uint64_t seed,
+                                   uint64_t step, ptie_loss_parts *parts) {
     assert(count >= 1 && count <= stepper->batch);
     ptie_pool *pool = stepper->engine->pool;
     const int32_t sections = stepper->model->graph.conv_count + 1;
@@ -164,6 +171,6 @@ ptie_status ptie_stepper_gradients(ptie_stepper *stepper, int32_t count, uint64_
 }
 
 void ptie_stepper_update(ptie_stepper *stepper, const ptie_adamw *adamw, uint64_t step) {
-    ptie_adamw_apply(stepper->model->values, stepper->state[1], stepper->state[2], stepper->state[0],
-                     stepper->model->graph.trainable, adamw, step);
+    ptie_adamw_apply(stepper->model->values, stepper->state[1], stepper->state[2],
+                     stepper->state[0], stepper->model->graph.trainable, adamw, step);
 }

@@ -8,8 +8,8 @@
 #include "base/text.h"
 #include "nn/model.h"
 
-ptie_status ptie_nn_tensors(const ptie_model *model, ptie_tensor_view **tensors, size_t *tensor_count,
-                            ptie_note **notes, size_t *note_count) {
+ptie_status ptie_nn_tensors(const ptie_model *model, ptie_tensor_view **tensors,
+                            size_t *tensor_count, ptie_note **notes, size_t *note_count) {
     const ptie_graph *graph = &model->graph;
     ptie_tensor_view *views = ptie_alloc((size_t)graph->param_count, sizeof *views);
     ptie_note *all = ptie_alloc(PTIE_MODEL_FACTS + model->note_count, sizeof *all);
@@ -51,8 +51,8 @@ static ptie_status read_fact(const char **value, const ptie_safetensors *file, c
                              const char *expected, const char *where) {
     *value = ptie_safetensors_note(file, key);
     if (*value) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EFORMAT, "%s: not a ptie model: metadata '%s' is missing (expected %s)", where,
-                     key, expected);
+    return PTIE_FAIL(PTIE_EFORMAT, "%s: not a ptie model: metadata '%s' is missing (expected %s)",
+                     where, key, expected);
 }
 
 static ptie_status read_number(double *number, const ptie_safetensors *file, const char *key,
@@ -60,7 +60,8 @@ static ptie_status read_number(double *number, const ptie_safetensors *file, con
     const char *value;
     PTIE_TRY(read_fact(&value, file, key, "a number", where));
     if (!ptie_parse_quantity(value, PTIE_NUMBER, number)) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EFORMAT, "%s: metadata '%s' (expected a number, found '%s')", where, key, value);
+    return PTIE_FAIL(PTIE_EFORMAT, "%s: metadata '%s' (expected a number, found '%s')", where, key,
+                     value);
 }
 
 /* One of two words: false for the first, true for the second. */
@@ -70,8 +71,8 @@ static ptie_status read_word(bool *second, const ptie_safetensors *file, const c
     PTIE_TRY(read_fact(&value, file, key, word0, where));
     *second = strcmp(value, word1) == 0;
     if (*second || strcmp(value, word0) == 0) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: metadata '%s' (expected '%s' or '%s', found '%s')", where, key,
-                     word0, word1, value);
+    return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: metadata '%s' (expected '%s' or '%s', found '%s')",
+                     where, key, word0, word1, value);
 }
 
 /* "unet-8-16-32" */
@@ -87,8 +88,8 @@ static ptie_status read_architecture(ptie_model_params *params, const ptie_safet
     }
     if (*rest == '\0') return PTIE_OK;
     return PTIE_FAIL(PTIE_EUNSUPPORTED,
-                     "%s: unknown architecture (expected unet with 2 to %d widths, found '%s')", where,
-                     PTIE_MAX_LEVELS, value);
+                     "%s: unknown architecture (expected unet with 2 to %d widths, found '%s')",
+                     where, PTIE_MAX_LEVELS, value);
 }
 
 static ptie_status read_facts(ptie_model_params *params, const ptie_safetensors *file,
@@ -135,13 +136,14 @@ static ptie_status check_values(const float *values, const ptie_param *param, co
     bool variance = strstr(param->name, "running_var") != NULL;
     for (size_t i = 0; i < param->count; i++)
         if (!isfinite(values[i]) || (variance && values[i] < 0))
-            return PTIE_FAIL(PTIE_EFORMAT, "%s: tensor '%s' is damaged (expected %s, found %g at %zu)",
-                             where, param->name, variance ? "variances" : "finite numbers",
-                             (double)values[i], i);
+            return PTIE_FAIL(
+                PTIE_EFORMAT, "%s: tensor '%s' is damaged (expected %s, found %g at %zu)", where,
+                param->name, variance ? "variances" : "finite numbers", (double)values[i], i);
     return PTIE_OK;
 }
 
-static ptie_status read_tensors(ptie_model *model, const ptie_safetensors *file, const char *where) {
+static ptie_status read_tensors(ptie_model *model, const ptie_safetensors *file,
+                                const char *where) {
     for (int32_t i = 0; i < model->graph.param_count; i++) {
         const ptie_param *param = &model->graph.params[i];
         const ptie_tensor_view *tensor = ptie_safetensors_find(file, param->name);
@@ -161,7 +163,8 @@ static ptie_status read_notes(ptie_model *model, const ptie_safetensors *file) {
     return PTIE_OK;
 }
 
-ptie_status ptie_nn_from_safetensors(ptie_model **out, const ptie_safetensors *file, const char *where) {
+ptie_status ptie_nn_from_safetensors(ptie_model **out, const ptie_safetensors *file,
+                                     const char *where) {
     ptie_model_params params;
     ptie_model *model;
     *out = NULL;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Backward kernels are the adjoints and derivatives of the forward ones, at every level, against double precision:
- * <A x, y> = <x, A' y> for what is linear, central differences in double for what is not.
+/* Backward kernels are the adjoints and derivatives of the forward ones, at every level, against
+ * double precision: <A x, y> = <x, A' y> for what is linear, central differences in double for what
+ * is not.
  */
 #include "kernel/block.h"
 
@@ -14,7 +15,8 @@ static block make(int32_t channels, int32_t scale, ptie_random *random) {
     return b;
 }
 
-/* Both products are sums of about 10^3..10^5 terms of either sign; measured 4e-7 of |A x| |y| at worst. */
+/* Both products are sums of about 10^3..10^5 terms of either sign; measured 4e-7 of |A x| |y| at
+ * worst. */
 static void assert_adjoint(const block *ax, const block *y, const block *x, const block *ay) {
     double size = sqrt(block_dot(ax, ax) * block_dot(y, y));
     assert_near(block_dot(ax, y), block_dot(x, ay), 2e-6 * size);
@@ -29,7 +31,8 @@ static void at_every_level(void (*check)(const ptie_kernels *, ptie_random *)) {
 }
 
 static void check_conv3x3(const ptie_kernels *kernels, ptie_random *random) {
-    block x = make(IN, 1, random), ax = make(OUT, 1, random), y = make(OUT, 1, random), ay = make(IN, 1, random);
+    block x = make(IN, 1, random), ax = make(OUT, 1, random), y = make(OUT, 1, random),
+          ay = make(IN, 1, random);
     float weights[OUT * IN * 9], packed[16 * IN * 9], packed_adjoint[8 * OUT * 9];
     for (int i = 0; i < OUT * IN * 9; i++) weights[i] = (float)ptie_random_uniform(random, -1, 1);
     ptie_conv3x3_pack(packed, weights, OUT, IN, NULL);
@@ -52,7 +55,8 @@ static void conv3x3_backward_is_the_adjoint(void **state) {
 }
 
 static void check_conv1x1(const ptie_kernels *kernels, ptie_random *random) {
-    block x = make(IN, 1, random), ax = make(1, 1, random), y = make(1, 1, random), ay = make(IN, 1, random);
+    block x = make(IN, 1, random), ax = make(1, 1, random), y = make(1, 1, random),
+          ay = make(IN, 1, random);
     float weights[IN];
     double gradient[IN] = {0}, bias_gradient = 0, product = 0, sum = 0;
     for (int i = 0; i < IN; i++) weights[i] = (float)ptie_random_uniform(random, -1, 1);
@@ -64,7 +68,8 @@ static void check_conv1x1(const ptie_kernels *kernels, ptie_random *random) {
     for (int i = 0; i < IN; i++) product += gradient[i] * (double)weights[i];
     assert_near(product, block_dot(&ax, &y), 2e-6 * size);
     for (int32_t row = 0; row < HEIGHT; row++)
-        for (int32_t column = 0; column < WIDTH; column++) sum += (double)*block_pixel(&y, 0, row, column);
+        for (int32_t column = 0; column < WIDTH; column++)
+            sum += (double)*block_pixel(&y, 0, row, column);
     assert_near(bias_gradient, sum, 1e-6 * HEIGHT * WIDTH);
     block_free(&x), block_free(&ax), block_free(&y), block_free(&ay);
 }
@@ -75,7 +80,8 @@ static void conv1x1_backward_is_the_adjoint(void **state) {
 }
 
 static void check_upsample(const ptie_kernels *kernels, ptie_random *random) {
-    block x = make(IN, 1, random), ax = make(IN, 2, random), y = make(IN, 2, random), ay = make(IN, 1, random);
+    block x = make(IN, 1, random), ax = make(IN, 2, random), y = make(IN, 2, random),
+          ay = make(IN, 1, random);
     kernels->upsample(&ax.map, &x.map);
     kernels->upsample_backward(&ay.map, &y.map);
     assert_adjoint(&ax, &y, &x, &ay);
@@ -87,7 +93,8 @@ static void upsample_backward_is_the_adjoint(void **state) {
     at_every_level(check_upsample);
 }
 
-/* Every value lies at (2 i + 1/2) / 2 of its neighbours: a plane stays a plane away from the edges. */
+/* Every value lies at (2 i + 1/2) / 2 of its neighbours: a plane stays a plane away from the edges.
+ */
 static void check_plane(const ptie_kernels *kernels, ptie_random *random) {
     block x = make(1, 1, random), ax = make(1, 2, random);
     for (int32_t row = 0; row < HEIGHT; row++)
@@ -111,7 +118,8 @@ static void upsample_keeps_a_plane(void **state) {
 
 /* With the places of the maxima held fixed the maximum is linear: A x picks, A' y puts back. */
 static void check_maxpool(const ptie_kernels *kernels, ptie_random *random) {
-    block x = make(IN, 2, random), ax = make(IN, 1, random), y = make(IN, 1, random), ay = make(IN, 2, random);
+    block x = make(IN, 2, random), ax = make(IN, 1, random), y = make(IN, 1, random),
+          ay = make(IN, 2, random);
     for (size_t i = 0; i < ay.floats; i++) ay.memory[i] = 0; /* it adds */
     kernels->maxpool(&ax.map, &x.map);
     kernels->maxpool_backward(&ay.map, &y.map, &x.map, &ax.map);
@@ -125,12 +133,17 @@ static void maxpool_backward_is_the_adjoint(void **state) {
 }
 
 static void check_window(const ptie_kernels *kernels, ptie_random *random) {
-    enum { MARGIN = PTIE_SSIM_WINDOW - 1, LARGE = HEIGHT * WIDTH, SMALL = (HEIGHT - MARGIN) * (WIDTH - MARGIN) };
+    enum {
+        MARGIN = PTIE_SSIM_WINDOW - 1,
+        LARGE = HEIGHT * WIDTH,
+        SMALL = (HEIGHT - MARGIN) * (WIDTH - MARGIN)
+    };
     float x[LARGE], ay[LARGE], ax[SMALL], y[SMALL], taps[PTIE_SSIM_WINDOW], row[WIDTH + 64];
     double left = 0, right = 0, ax2 = 0, y2 = 0;
     for (int i = 0; i < LARGE; i++) x[i] = (float)ptie_random_uniform(random, -1, 1);
     for (int i = 0; i < SMALL; i++) y[i] = (float)ptie_random_uniform(random, -1, 1);
-    for (int i = 0; i < PTIE_SSIM_WINDOW; i++) taps[i] = 1 / (1 + (float)abs(i - PTIE_SSIM_WINDOW / 2));
+    for (int i = 0; i < PTIE_SSIM_WINDOW; i++)
+        taps[i] = 1 / (1 + (float)abs(i - PTIE_SSIM_WINDOW / 2));
     kernels->window(ax, x, WIDTH, HEIGHT, taps, row);
     kernels->window_adjoint(ay, y, WIDTH, HEIGHT, taps, row);
     for (int i = 0; i < SMALL; i++) {
@@ -147,8 +160,10 @@ static void window_adjoint_is_the_adjoint(void **state) {
     at_every_level(check_window);
 }
 
-/* L = <r, max(0, gamma xhat(z) + beta)> of one channel over the batch z, in double, by definition. */
-static double normalised_product(const double *z, const double *r, int count, double gamma, double beta) {
+/* L = <r, max(0, gamma xhat(z) + beta)> of one channel over the batch z, in double, by definition.
+ */
+static double normalised_product(const double *z, const double *r, int count, double gamma,
+                                 double beta) {
     double mean = 0, variance = 0, product = 0;
     for (int i = 0; i < count; i++) mean += z[i] / count;
     for (int i = 0; i < count; i++) variance += (z[i] - mean) * (z[i] - mean) / count;
@@ -179,8 +194,9 @@ static void check_normalise(const ptie_kernels *kernels, ptie_random *random) {
     norm.mean_gx = (float)(sums[1] / COUNT);
     kernels->normalise_backward(&g.map, &z.map, &norm);
 
-    /* Central differences with h = 1e-5: truncation h^2 ~ 1e-10, rounding 1e-16 / h ~ 1e-11 of L ~ 10^2, unless a
-       ReLU opens within h (its kink adds at most |r| gamma inverse_std / 2, and is left out). */
+    /* Central differences with h = 1e-5: truncation h^2 ~ 1e-10, rounding 1e-16 / h ~ 1e-11 of L ~
+       10^2, unless a ReLU opens within h (its kink adds at most |r| gamma inverse_std / 2, and is
+       left out). */
     const double h = 1e-5;
     double gradient_gamma = (normalised_product(z64, r64, COUNT, gamma + h, beta) -
                              normalised_product(z64, r64, COUNT, gamma - h, beta)) /
@@ -198,7 +214,8 @@ static void check_normalise(const ptie_kernels *kernels, ptie_random *random) {
         z64[i] = kept - h;
         double below = normalised_product(z64, r64, COUNT, gamma, beta);
         z64[i] = kept;
-        assert_near((double)*block_pixel(&g, 0, i / WIDTH, i % WIDTH), (above - below) / (2 * h), 2e-6);
+        assert_near((double)*block_pixel(&g, 0, i / WIDTH, i % WIDTH), (above - below) / (2 * h),
+                    2e-6);
     }
     block_free(&z), block_free(&g);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Maps in memory that is watched: odd strides, unaligned rows, and everything outside the interior must stay as
- * it was.
+/* Maps in memory that is watched: odd strides, unaligned rows, and everything outside the interior
+ * must stay as it was.
  */
 #ifndef PTIE_TESTS_KERNEL_BLOCK_H
 #define PTIE_TESTS_KERNEL_BLOCK_H
@@ -24,7 +24,8 @@ static inline void block_fill(block *b, ptie_random *random) {
     for (size_t i = 0; i < b->floats; i++) b->memory[i] = (float)ptie_random_uniform(random, -1, 1);
 }
 
-static inline block block_make(int32_t channels, int32_t height, int32_t width, ptie_random *random) {
+static inline block block_make(int32_t channels, int32_t height, int32_t width,
+                               ptie_random *random) {
     block b = {.map = {.channels = channels, .height = height, .width = width}};
     b.map.row = width + 1 + ptie_random_integer(random, 0, 7);
     b.map.plane = (height + 2) * b.map.row + ptie_random_integer(random, 0, 9);

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Every kernel of every level this machine runs against its scalar twin: all widths from one pixel to past three
- * blocks, channel counts with every tail, odd strides, unaligned rows.  Nothing outside the interior may change.
+/* Every kernel of every level this machine runs against its scalar twin: all widths from one pixel
+ * to past three blocks, channel counts with every tail, odd strides, unaligned rows.  Nothing
+ * outside the interior may change.
  *
- * Two sums of the same n products in different orders differ by at most 2 gamma_n sum |a b| (Higham, Accuracy and
- * Stability, 3.1); sum |a b| is what the scalar twin makes of the magnitudes.
+ * Two sums of the same n products in different orders differ by at most 2 gamma_n sum |a b|
+ * (Higham, Accuracy and Stability, 3.1); sum |a b| is what the scalar twin makes of the magnitudes.
  */
 #include "kernel/block.h"
 
@@ -23,9 +24,11 @@ static double uniform(twin *t, double low, double high) {
     return ptie_random_uniform(&t->random, low, high);
 }
 
-/* Interior: |found - expected| <= factor * magnitude + extra; elsewhere the same bits.  magnitude NULL: 0. */
-static void compare(const twin *t, const block *found, const block *expected, const block *magnitude,
-                    double factor, const double *extra, const char *kernel) {
+/* Interior: |found - expected| <= factor * magnitude + extra; elsewhere the same bits.  magnitude
+ * NULL: 0. */
+static void compare(const twin *t, const block *found, const block *expected,
+                    const block *magnitude, double factor, const double *extra,
+                    const char *kernel) {
     const ptie_map *map = &found->map;
     bool *inside = calloc(found->floats, sizeof *inside);
     size_t pixel = 0;
@@ -33,19 +36,19 @@ static void compare(const twin *t, const block *found, const block *expected, co
         for (int32_t y = 0; y < map->height; y++)
             for (int32_t x = 0; x < map->width; x++, pixel++) {
                 inside[block_pixel(found, c, y, x) - found->memory] = true;
-                double difference =
-                    fabs((double)*block_pixel(found, c, y, x) - (double)*block_pixel(expected, c, y, x));
+                double difference = fabs((double)*block_pixel(found, c, y, x) -
+                                         (double)*block_pixel(expected, c, y, x));
                 double bound = (magnitude ? factor * (double)*block_pixel(magnitude, c, y, x) : 0) +
                                (extra ? extra[pixel] : 0);
                 if (!(difference <= bound))
-                    fail_msg("%s: %d -> %d channels, %d x %d, at (%d, %d, %d): off by %g, bound %g", kernel,
-                             t->in_channels, t->out_channels, t->width, t->height, c, y, x, difference,
-                             bound);
+                    fail_msg("%s: %d -> %d channels, %d x %d, at (%d, %d, %d): off by %g, bound %g",
+                             kernel, t->in_channels, t->out_channels, t->width, t->height, c, y, x,
+                             difference, bound);
             }
     for (size_t i = 0; i < found->floats; i++)
         if (!inside[i] && memcmp(&found->memory[i], &expected->memory[i], sizeof(float)) != 0)
-            fail_msg("%s: %d -> %d channels, %d x %d: wrote outside, %zu floats into the block", kernel,
-                     t->in_channels, t->out_channels, t->width, t->height, i);
+            fail_msg("%s: %d -> %d channels, %d x %d: wrote outside, %zu floats into the block",
+                     kernel, t->in_channels, t->out_channels, t->width, t->height, i);
     free(inside);
 }
 
@@ -53,9 +56,9 @@ static void compare_sums(const twin *t, const double *found, const double *expec
                          const double *magnitude, double factor, size_t count, const char *kernel) {
     for (size_t i = 0; i < count; i++)
         if (!(fabs(found[i] - expected[i]) <= factor * magnitude[i]))
-            fail_msg("%s: %d -> %d channels, %d x %d, sum %zu: found %.9g, expected %.9g, bound %g", kernel,
-                     t->in_channels, t->out_channels, t->width, t->height, i, found[i], expected[i],
-                     factor * magnitude[i]);
+            fail_msg("%s: %d -> %d channels, %d x %d, sum %zu: found %.9g, expected %.9g, bound %g",
+                     kernel, t->in_channels, t->out_channels, t->width, t->height, i, found[i],
+                     expected[i], factor * magnitude[i]);
 }
 
 static float *make_floats(twin *t, size_t count) {
@@ -78,21 +81,25 @@ static void make_ties(block *b) {
 static void test_conv3x3(twin *t) {
     const size_t weight_count = (size_t)t->out_channels * (size_t)t->in_channels * 9;
     const size_t packed_count = ptie_conv3x3_packed(t->out_channels, t->in_channels);
-    block in = block_make(t->in_channels, t->height, t->width, &t->random), in_abs = block_absolute(&in);
+    block in = block_make(t->in_channels, t->height, t->width, &t->random),
+          in_abs = block_absolute(&in);
     block found = block_make(t->out_channels, t->height, t->width, &t->random);
     block expected = block_copy(&found), magnitude = block_copy(&found);
     float *weights = make_floats(t, weight_count), *bias = make_floats(t, (size_t)t->out_channels);
     float *packed = malloc(packed_count * sizeof *packed);
     ptie_conv3x3_pack(packed, weights, t->out_channels, t->in_channels, NULL);
-    float *packed_abs = magnitudes(packed, packed_count), *bias_abs = magnitudes(bias, (size_t)t->out_channels);
+    float *packed_abs = magnitudes(packed, packed_count),
+          *bias_abs = magnitudes(bias, (size_t)t->out_channels);
     t->scalar->conv3x3(&magnitude.map, &in_abs.map, packed_abs, bias_abs, false);
     for (int variant = 0; variant < 3; variant++) { /* bare; with bias; with bias and ReLU */
         const float *used = variant ? bias : NULL;
         t->kernels->conv3x3(&found.map, &in.map, packed, used, variant == 2);
         t->scalar->conv3x3(&expected.map, &in.map, packed, used, variant == 2);
-        compare(t, &found, &expected, &magnitude, 2 * gamma_n(9 * t->in_channels + 1), NULL, "conv3x3");
+        compare(t, &found, &expected, &magnitude, 2 * gamma_n(9 * t->in_channels + 1), NULL,
+                "conv3x3");
     }
-    block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected), block_free(&magnitude);
+    block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected),
+        block_free(&magnitude);
     free(weights), free(bias), free(packed), free(packed_abs), free(bias_abs);
 }
 
@@ -103,8 +110,10 @@ static double lane_terms(const twin *t, int32_t rows) {
 
 static void test_conv3x3_weights(twin *t) {
     const size_t count = (size_t)t->out_channels * (size_t)t->in_channels * 9;
-    block in = block_make(t->in_channels, t->height, t->width, &t->random), in_abs = block_absolute(&in);
-    block g = block_make(t->out_channels, t->height, t->width, &t->random), g_abs = block_absolute(&g);
+    block in = block_make(t->in_channels, t->height, t->width, &t->random),
+          in_abs = block_absolute(&in);
+    block g = block_make(t->out_channels, t->height, t->width, &t->random),
+          g_abs = block_absolute(&g);
     double *sums = calloc(3 * count, sizeof *sums);
     for (size_t i = 0; i < count; i++) sums[i] = sums[count + i] = 0.5; /* it adds */
     t->kernels->conv3x3_weights(sums, &g.map, &in.map);
@@ -118,31 +127,37 @@ static void test_conv3x3_weights(twin *t) {
 
 static void test_conv1x1(twin *t) {
     const size_t count = (size_t)t->out_channels * (size_t)t->in_channels;
-    block in = block_make(t->in_channels, t->height, t->width, &t->random), in_abs = block_absolute(&in);
+    block in = block_make(t->in_channels, t->height, t->width, &t->random),
+          in_abs = block_absolute(&in);
     block found = block_make(t->out_channels, t->height, t->width, &t->random);
     block expected = block_copy(&found), magnitude = block_copy(&found);
     float *weights = make_floats(t, count), *bias = make_floats(t, (size_t)t->out_channels);
-    float *weights_abs = magnitudes(weights, count), *bias_abs = magnitudes(bias, (size_t)t->out_channels);
+    float *weights_abs = magnitudes(weights, count),
+          *bias_abs = magnitudes(bias, (size_t)t->out_channels);
     t->scalar->conv1x1(&magnitude.map, &in_abs.map, weights_abs, bias_abs);
     for (int with_bias = 0; with_bias < 2; with_bias++) {
         t->kernels->conv1x1(&found.map, &in.map, weights, with_bias ? bias : NULL);
         t->scalar->conv1x1(&expected.map, &in.map, weights, with_bias ? bias : NULL);
         compare(t, &found, &expected, &magnitude, 2 * gamma_n(t->in_channels + 1), NULL, "conv1x1");
     }
-    block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected), block_free(&magnitude);
+    block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected),
+        block_free(&magnitude);
     free(weights), free(bias), free(weights_abs), free(bias_abs);
 }
 
 static void test_conv1x1_weights(twin *t) {
     const size_t weights = (size_t)t->out_channels * (size_t)t->in_channels;
     const size_t count = weights + (size_t)t->out_channels; /* the biases follow */
-    block in = block_make(t->in_channels, t->height, t->width, &t->random), in_abs = block_absolute(&in);
-    block g = block_make(t->out_channels, t->height, t->width, &t->random), g_abs = block_absolute(&g);
+    block in = block_make(t->in_channels, t->height, t->width, &t->random),
+          in_abs = block_absolute(&in);
+    block g = block_make(t->out_channels, t->height, t->width, &t->random),
+          g_abs = block_absolute(&g);
     double *sums = calloc(3 * count, sizeof *sums);
     for (size_t i = 0; i < count; i++) sums[i] = sums[count + i] = 0.5;
     t->kernels->conv1x1_weights(sums, sums + weights, &g.map, &in.map);
     t->scalar->conv1x1_weights(sums + count, sums + count + weights, &g.map, &in.map);
-    t->scalar->conv1x1_weights(sums + 2 * count, sums + 2 * count + weights, &g_abs.map, &in_abs.map);
+    t->scalar->conv1x1_weights(sums + 2 * count, sums + 2 * count + weights, &g_abs.map,
+                               &in_abs.map);
     compare_sums(t, sums, sums + count, sums + 2 * count, gamma_n(lane_terms(t, 1)), count,
                  "conv1x1_weights");
     block_free(&in), block_free(&in_abs), block_free(&g), block_free(&g_abs);
@@ -151,13 +166,15 @@ static void test_conv1x1_weights(twin *t) {
 
 static void test_moments(twin *t) {
     const size_t count = 2 * (size_t)t->out_channels;
-    block z = block_make(t->out_channels, t->height, t->width, &t->random), z_abs = block_absolute(&z);
+    block z = block_make(t->out_channels, t->height, t->width, &t->random),
+          z_abs = block_absolute(&z);
     double *sums = calloc(3 * count, sizeof *sums);
     for (size_t i = 0; i < count; i++) sums[i] = sums[count + i] = 0.5;
     t->kernels->moments(sums, &z.map);
     t->scalar->moments(sums + count, &z.map);
     t->scalar->moments(sums + 2 * count, &z_abs.map);
-    compare_sums(t, sums, sums + count, sums + 2 * count, gamma_n(lane_terms(t, 1)), count, "moments");
+    compare_sums(t, sums, sums + count, sums + 2 * count, gamma_n(lane_terms(t, 1)), count,
+                 "moments");
     block_free(&z), block_free(&z_abs);
     free(sums);
 }
@@ -174,7 +191,8 @@ static ptie_norm *make_norms(twin *t) {
     return norms;
 }
 
-/* Rounding of scale * z + shift; where the value itself is smaller, the ReLU may be open or shut. */
+/* Rounding of scale * z + shift; where the value itself is smaller, the ReLU may be open or shut.
+ */
 static double normalise_rounding(const ptie_norm *norm, double z) {
     return gamma_n(3) * (fabs((double)norm->scale * z) + fabs((double)norm->shift));
 }
@@ -185,7 +203,8 @@ static bool undecided(const ptie_norm *norm, double z) {
 
 static void test_normalise(twin *t) {
     block z = block_make(t->out_channels, t->height, t->width, &t->random);
-    block found = block_make(t->out_channels, t->height, t->width, &t->random), expected = block_copy(&found);
+    block found = block_make(t->out_channels, t->height, t->width, &t->random),
+          expected = block_copy(&found);
     ptie_norm *norms = make_norms(t);
     double *bound = malloc((size_t)(t->out_channels * t->height * t->width) * sizeof *bound);
     size_t pixel = 0;
@@ -226,7 +245,8 @@ static void test_normalise_sums(twin *t) {
 
 static void test_normalise_backward(twin *t) {
     block z = block_make(t->out_channels, t->height, t->width, &t->random);
-    block found = block_make(t->out_channels, t->height, t->width, &t->random), expected = block_copy(&found);
+    block found = block_make(t->out_channels, t->height, t->width, &t->random),
+          expected = block_copy(&found);
     ptie_norm *norms = make_norms(t);
     double *bound = malloc((size_t)(t->out_channels * t->height * t->width) * sizeof *bound);
     size_t pixel = 0;
@@ -234,7 +254,8 @@ static void test_normalise_backward(twin *t) {
         for (int32_t y = 0; y < t->height; y++)
             for (int32_t x = 0; x < t->width; x++) {
                 const ptie_norm *n = &norms[c];
-                double value = (double)*block_pixel(&z, c, y, x), g = (double)*block_pixel(&found, c, y, x);
+                double value = (double)*block_pixel(&z, c, y, x),
+                       g = (double)*block_pixel(&found, c, y, x);
                 double xhat = (value - (double)n->mean) * (double)n->inverse_std;
                 double size = fabs(g) + fabs((double)n->mean_g) + fabs(xhat * (double)n->mean_gx);
                 bound[pixel++] = fabs((double)n->scale) *
@@ -249,7 +270,8 @@ static void test_normalise_backward(twin *t) {
 
 static void test_maxpool(twin *t) {
     block in = block_make(t->out_channels, 2 * t->height, 2 * t->width, &t->random);
-    block found = block_make(t->out_channels, t->height, t->width, &t->random), expected = block_copy(&found);
+    block found = block_make(t->out_channels, t->height, t->width, &t->random),
+          expected = block_copy(&found);
     make_ties(&in);
     t->kernels->maxpool(&found.map, &in.map);
     t->scalar->maxpool(&expected.map, &in.map);
@@ -272,14 +294,16 @@ static void test_maxpool_backward(twin *t) {
 }
 
 static void test_upsample(twin *t) {
-    block in = block_make(t->out_channels, t->height, t->width, &t->random), in_abs = block_absolute(&in);
+    block in = block_make(t->out_channels, t->height, t->width, &t->random),
+          in_abs = block_absolute(&in);
     block found = block_make(t->out_channels, 2 * t->height, 2 * t->width, &t->random);
     block expected = block_copy(&found), magnitude = block_copy(&found);
     t->kernels->upsample(&found.map, &in.map);
     t->scalar->upsample(&expected.map, &in.map);
     t->scalar->upsample(&magnitude.map, &in_abs.map);
     compare(t, &found, &expected, &magnitude, 2 * gamma_n(4), NULL, "upsample");
-    block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected), block_free(&magnitude);
+    block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected),
+        block_free(&magnitude);
 }
 
 static void test_upsample_backward(twin *t) {
@@ -292,14 +316,16 @@ static void test_upsample_backward(twin *t) {
     t->scalar->upsample_backward(&expected.map, &g.map);
     t->scalar->upsample_backward(&magnitude.map, &g_abs.map);
     compare(t, &found, &expected, &magnitude, 2 * gamma_n(17), NULL, "upsample_backward");
-    block_free(&g), block_free(&g_abs), block_free(&found), block_free(&expected), block_free(&magnitude);
+    block_free(&g), block_free(&g_abs), block_free(&found), block_free(&expected),
+        block_free(&magnitude);
 }
 
-/* 1 / (1 + e): an error r of e changes the result by at most r / 4; e is good to 8 roundings in each twin, and
-   the sum and the quotient round once more. */
+/* 1 / (1 + e): an error r of e changes the result by at most r / 4; e is good to 8 roundings in
+   each twin, and the sum and the quotient round once more. */
 static void test_sigmoid(twin *t) {
     block in = block_make(t->out_channels, t->height, t->width, &t->random);
-    block found = block_make(t->out_channels, t->height, t->width, &t->random), expected = block_copy(&found);
+    block found = block_make(t->out_channels, t->height, t->width, &t->random),
+          expected = block_copy(&found);
     block ones = block_copy(&found);
     for (size_t i = 0; i < in.floats; i++) in.memory[i] *= i % 50 == 0 ? 200 : 12;
     for (size_t i = 0; i < ones.floats; i++) ones.memory[i] = 1;
@@ -317,18 +343,20 @@ static block make_image(twin *t, int32_t height, int32_t width) {
 }
 
 static void check_window(twin *t, bool adjoint) {
-    const int32_t margin = PTIE_SSIM_WINDOW - 1, width = t->width + margin, height = t->height + margin;
+    const int32_t margin = PTIE_SSIM_WINDOW - 1, width = t->width + margin,
+                  height = t->height + margin;
     block small = make_image(t, t->height, t->width), large = make_image(t, height, width);
     block in = adjoint ? small : large, found = adjoint ? large : small;
-    block expected = block_copy(&found), magnitude = block_copy(&found), in_abs = block_absolute(&in);
+    block expected = block_copy(&found), magnitude = block_copy(&found),
+          in_abs = block_absolute(&in);
     float *row = malloc((size_t)(width + 64) * sizeof *row), taps[PTIE_SSIM_WINDOW];
     for (int i = 0; i <= PTIE_SSIM_WINDOW / 2; i++)
         taps[i] = taps[PTIE_SSIM_WINDOW - 1 - i] = (float)uniform(t, 0, 1);
     const ptie_kernels *tables[3] = {t->kernels, t->scalar, t->scalar};
     const block *outs[3] = {&found, &expected, &magnitude}, *ins[3] = {&in, &in, &in_abs};
     for (int i = 0; i < 3; i++)
-        (adjoint ? tables[i]->window_adjoint : tables[i]->window)(outs[i]->map.data, ins[i]->map.data, width,
-                                                                  height, taps, row);
+        (adjoint ? tables[i]->window_adjoint : tables[i]->window)(
+            outs[i]->map.data, ins[i]->map.data, width, height, taps, row);
     compare(t, &found, &expected, &magnitude, 2 * gamma_n(2 * PTIE_SSIM_WINDOW), NULL,
             adjoint ? "window_adjoint" : "window");
     block_free(&small), block_free(&large), block_free(&expected), block_free(&magnitude);

@@ -61,12 +61,15 @@ static int32_t mirrored(int32_t i, int32_t n) {
 /* A frame of any size gives what its continuation by reflection gives, cropped. */
 static void check_size(const fixture *f, int32_t width, int32_t height) {
     const int32_t unit = 1 << (ptie_model_get_params(f->model)->levels - 1);
-    const int32_t full_width = (width + unit - 1) / unit * unit, full_height = (height + unit - 1) / unit * unit;
+    const int32_t full_width = (width + unit - 1) / unit * unit,
+                  full_height = (height + unit - 1) / unit * unit;
     float *noisy = random_image(width * height, 0, 1);
     float *padded = malloc((size_t)(full_width * full_height) * sizeof *padded);
     for (int32_t i = 0; i < full_width * full_height; i++)
-        padded[i] = noisy[mirrored(i / full_width, height) * width + mirrored(i % full_width, width)];
-    float *clean = denoise(f, noisy, width, height), *full = denoise(f, padded, full_width, full_height);
+        padded[i] =
+            noisy[mirrored(i / full_width, height) * width + mirrored(i % full_width, width)];
+    float *clean = denoise(f, noisy, width, height),
+          *full = denoise(f, padded, full_width, full_height);
     for (int32_t i = 0; i < width * height; i++) {
         float expected = full[i / width * full_width + i % width];
         assert_memory_equal(&clean[i], &expected, sizeof expected);
@@ -118,8 +121,12 @@ static ptie_model *make_identity(void) {
     ptie_model_params params;
     ptie_model *model;
     ptie_model_params_init(&params);
-    params = (ptie_model_params){.struct_size = params.struct_size, .levels = 2, .width = {1, 1},
-                                 .in_channels = 1, .output = PTIE_LINEAR, .bn_epsilon = 1e-3,
+    params = (ptie_model_params){.struct_size = params.struct_size,
+                                 .levels = 2,
+                                 .width = {1, 1},
+                                 .in_channels = 1,
+                                 .output = PTIE_LINEAR,
+                                 .bn_epsilon = 1e-3,
                                  .bn_momentum = 0.99};
     assert_ok(ptie_model_create(&model, &params));
     const ptie_graph *graph = &model->graph;
@@ -135,7 +142,8 @@ static ptie_model *make_identity(void) {
             char name[40];
             snprintf(name, sizeof name, "%s.conv%d.weight", stages[stage], number);
             const ptie_param *param = ptie_graph_find(graph, name);
-            model->values[param->offset + 9 * (size_t)(param->shape[1] - 1) + 4] = 1; /* centre, last input */
+            model->values[param->offset + 9 * (size_t)(param->shape[1] - 1) + 4] =
+                1; /* centre, last input */
         }
     model->values[ptie_graph_find(graph, "out.weight")->offset] = 1;
     return model;
@@ -143,7 +151,8 @@ static ptie_model *make_identity(void) {
 
 enum { SIZE = 40, COUNT = SIZE * SIZE };
 
-static void denoise_rad(const ptie_model *model, float *clean, const float *noisy, int32_t polarity) {
+static void denoise_rad(const ptie_model *model, float *clean, const float *noisy,
+                        int32_t polarity) {
     ptie_ctx *ctx;
     ptie_denoiser *denoiser;
     assert_ok(ptie_ctx_create(&ctx, NULL));
@@ -160,12 +169,13 @@ static void make_jet(float *phase, float level, float sign) {
     for (int i = 0; i < COUNT; i++) {
         int y = i / SIZE, x = i % SIZE;
         bool inside = y >= 12 && y < 28;
-        phase[i] = level + sign * (inside ? 5 * sinf((float)(y - 12) * 0.2f) * (1 + 0.01f * (float)x) : 0);
+        phase[i] =
+            level + sign * (inside ? 5 * sinf((float)(y - 12) * 0.2f) * (1 + 0.01f * (float)x) : 0);
     }
 }
 
-/* What a network changes nothing of comes back in rad, with the background at 0.  The level is found to 1/4096 of
-   the range (here 7), single precision adds 1e-6 of it. */
+/* What a network changes nothing of comes back in rad, with the background at 0.  The level is
+   found to 1/4096 of the range (here 7), single precision adds 1e-6 of it. */
 static void radians_come_back_through_the_identity(void **state) {
     (void)state;
     ptie_model *model = make_identity();
@@ -193,7 +203,8 @@ static void gain_and_offset_pass_through(void **state) {
     for (int i = 0; i < COUNT; i++) scaled[i] = 4 * noisy[i] + 8;
     denoise_rad(f.model, again, scaled, 1);
     for (int i = 0; i < COUNT; i++) again[i] /= 4;
-    /* The input of the network is rounded differently: 1e-7 of it, which the fit of the gain keeps. */
+    /* The input of the network is rounded differently: 1e-7 of it, which the fit of the gain keeps.
+     */
     assert_near(support_relative_error(again, clean, COUNT), 0, 1e-4);
     for (int i = 0; i < COUNT; i++) scaled[i] = -noisy[i];
     denoise_rad(f.model, again, scaled, -1);
@@ -221,12 +232,15 @@ static void wrong_requests_are_refused(void **state) {
     ptie_model *stereo;
     assert_fails(ptie_denoiser_create(&denoiser, f.ctx, f.model, 0, 5), PTIE_EINVAL, "width_px");
     assert_null(denoiser);
-    assert_fails(ptie_denoiser_create(&denoiser, f.ctx, f.model, 5, 40000), PTIE_EINVAL, "height_px");
-    assert_fails(ptie_denoiser_create(&denoiser, f.ctx, NULL, 5, 5), PTIE_EINVAL, "model is missing");
+    assert_fails(ptie_denoiser_create(&denoiser, f.ctx, f.model, 5, 40000), PTIE_EINVAL,
+                 "height_px");
+    assert_fails(ptie_denoiser_create(&denoiser, f.ctx, NULL, 5, 5), PTIE_EINVAL,
+                 "model is missing");
     ptie_model_params_init(&params);
     params.in_channels = 2;
     assert_ok(ptie_model_create(&stereo, &params));
-    assert_fails(ptie_denoiser_create(&denoiser, f.ctx, stereo, 5, 5), PTIE_ESIZE, "expected 1 channel, found 2");
+    assert_fails(ptie_denoiser_create(&denoiser, f.ctx, stereo, 5, 5), PTIE_ESIZE,
+                 "expected 1 channel, found 2");
     ptie_model_free(stereo);
     ptie_denoiser_free(NULL);
     close_fixture(&f);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The network, its gradients, the loss and the optimiser against PyTorch in double precision
- * (tests/golden/make_network.py), at every kernel level of this machine.  Beside each bound stands the worst
- * relative or absolute error measured over the levels; the margin is five- to sevenfold.
+ * (tests/golden/make_network.py), at every kernel level of this machine.  Beside each bound stands
+ * the worst relative or absolute error measured over the levels; the margin is five- to sevenfold.
  */
 #include "support/support.h"
 
@@ -32,10 +32,13 @@ static void open_golden(golden *g, ptie_cpu_level level) {
     assert_ok(ptie_safetensors_read(&g->file, support_source("tests/golden/network.safetensors")));
     assert_ok(ptie_engine_start(&g->engine, 2, ptie_cpu_name(level)));
     assert_ok(ptie_nn_from_safetensors(&g->model, g->file, "golden"));
-    assert_ok(ptie_stepper_create(&g->stepper, &g->engine, g->model, BATCH, WIDTH, HEIGHT, paper_weights));
+    assert_ok(ptie_stepper_create(&g->stepper, &g->engine, g->model, BATCH, WIDTH, HEIGHT,
+                                  paper_weights));
     for (int32_t n = 0; n < BATCH; n++) {
-        memcpy(ptie_stepper_noisy(g->stepper, n), tensor(g, "noisy") + n * PIXELS, PIXELS * sizeof(float));
-        memcpy(ptie_stepper_clean(g->stepper, n), tensor(g, "clean") + n * PIXELS, PIXELS * sizeof(float));
+        memcpy(ptie_stepper_noisy(g->stepper, n), tensor(g, "noisy") + n * PIXELS,
+               PIXELS * sizeof(float));
+        memcpy(ptie_stepper_clean(g->stepper, n), tensor(g, "clean") + n * PIXELS,
+               PIXELS * sizeof(float));
     }
 }
 
@@ -63,7 +66,8 @@ static void check_inference(golden *g) {
     for (int32_t n = 0; n < BATCH; n++) {
         assert_ok(ptie_nn_denoise(denoiser, clean, tensor(g, "noisy") + n * PIXELS, scratch));
         /* Measured 3.3e-7. */
-        assert_near(support_relative_error(clean, tensor(g, "inference") + n * PIXELS, PIXELS), 0, 2e-6);
+        assert_near(support_relative_error(clean, tensor(g, "inference") + n * PIXELS, PIXELS), 0,
+                    2e-6);
     }
     ptie_scratch_free(scratch);
     ptie_nn_denoiser_free(denoiser);
@@ -79,8 +83,10 @@ static void check_first_step(golden *g) {
     assert_ok(ptie_stepper_gradients(g->stepper, BATCH, 0, 1, parts));
     for (int32_t n = 0; n < BATCH; n++) {
         const float *expected = tensor(g, "parts") + 5 * n;
-        const double found[5] = {parts[n].loss, parts[n].l1, parts[n].ssim, parts[n].wmse, parts[n].mse};
-        for (int i = 0; i < 5; i++) assert_near(found[i], (double)expected[i], 5e-7); /* measured 9e-8 */
+        const double found[5] = {parts[n].loss, parts[n].l1, parts[n].ssim, parts[n].wmse,
+                                 parts[n].mse};
+        for (int i = 0; i < 5; i++)
+            assert_near(found[i], (double)expected[i], 5e-7); /* measured 9e-8 */
     }
     const ptie_graph *graph = &g->model->graph;
     for (int32_t i = 0; i < graph->param_count; i++) {
@@ -88,8 +94,9 @@ static void check_first_step(golden *g) {
         char name[64];
         size_t count = param->count;
         snprintf(name, sizeof name, param->trainable ? "gradient.%s" : "after.%s", param->name);
-        const float *found = param->trainable ? ptie_stepper_state(g->stepper, 0, param->name, &count)
-                                              : g->model->values + param->offset;
+        const float *found = param->trainable
+                                 ? ptie_stepper_state(g->stepper, 0, param->name, &count)
+                                 : g->model->values + param->offset;
         double error = support_relative_error(found, tensor(g, name), count);
         /* Required 1e-4; measured 2e-6 at worst. */
         if (!(error <= 1e-5)) fail_msg("%s: relative error %g", name, error);
@@ -129,8 +136,8 @@ static void check_ssim(golden *g) {
         ptie_loss_evaluate(g->engine.kernels, &parts, gradient, tensor(g, "noisy") + offset,
                            tensor(g, "clean") + offset, WIDTH, HEIGHT, only_ssim, -1, scratch);
         assert_near(parts.ssim, (double)tensor(g, "ssim")[n], 3e-7); /* measured 6e-8 */
-        assert_near(support_relative_error(gradient, tensor(g, "ssim_gradient") + offset, PIXELS), 0,
-                    5e-6); /* measured 9e-7 */
+        assert_near(support_relative_error(gradient, tensor(g, "ssim_gradient") + offset, PIXELS),
+                    0, 5e-6); /* measured 9e-7 */
     }
     ptie_scratch_free(scratch);
 }
@@ -146,10 +153,10 @@ static void check_adamw(golden *g) {
     float values[COUNT], first[COUNT] = {0}, second[COUNT] = {0};
     memcpy(values, tensor(g, "adamw_start"), sizeof values);
     for (uint64_t step = 1; step <= STEPS; step++)
-        ptie_adamw_apply(values, first, second, tensor(g, "adamw_gradients") + COUNT * (step - 1), COUNT,
-                         &adamw, step);
-    /* A step moves a value by about the learning rate; each is rounded a few times: 10 * 2^-24 * |v|.  Measured
-       1.2e-7 in place of 6e-7. */
+        ptie_adamw_apply(values, first, second, tensor(g, "adamw_gradients") + COUNT * (step - 1),
+                         COUNT, &adamw, step);
+    /* A step moves a value by about the learning rate; each is rounded a few times: 10 * 2^-24 *
+       |v|.  Measured 1.2e-7 in place of 6e-7. */
     for (int i = 0; i < COUNT; i++)
         assert_near((double)values[i], (double)tensor(g, "adamw_end")[i],
                     6e-7 * (fabs((double)values[i]) + 0.03));

@@ -30,7 +30,8 @@ static void the_papers_network_has_29777_parameters(void **state) {
     ptie_model_free(NULL);
 }
 
-/* Two levels, one width w: 9 w (in + w) + 9 (w w + w w) + 9 (2 w w + w w) weights, 6 norms, head. */
+/* Two levels, one width w: 9 w (in + w) + 9 (w w + w w) + 9 (2 w w + w w) weights, 6 norms, head.
+ */
 static void other_members_have_the_parameters_of_the_formula(void **state) {
     (void)state;
     for (int32_t w = 1; w <= 9; w += 4) {
@@ -73,13 +74,15 @@ static void parameters_out_of_range_are_named(void **state) {
     ptie_model_params params;
     ptie_model_params_init(&params);
     params.levels = 7;
-    assert_fails(ptie_model_create(&model, &params), PTIE_EINVAL, "levels is out of range (expected 2..6, found 7)");
+    assert_fails(ptie_model_create(&model, &params), PTIE_EINVAL,
+                 "levels is out of range (expected 2..6, found 7)");
     assert_null(model);
     ptie_model_params_init(&params);
     params.width[1] = 0;
-    assert_fails(ptie_model_create(&model, &params), PTIE_EINVAL, "width is out of range (expected 1..512, found 0)");
+    assert_fails(ptie_model_create(&model, &params), PTIE_EINVAL,
+                 "width is out of range (expected 1..512, found 0)");
     ptie_model_params_init(&params);
-    params.bn_epsilon = NAN;
+    params.bn_epsilon = (double)NAN;
     assert_fails(ptie_model_create(&model, &params), PTIE_EINVAL, "bn_epsilon");
     ptie_model_params_init(&params);
     params.dropout = 1;
@@ -93,14 +96,21 @@ static void a_saved_model_comes_back_whole(void **state) {
     ptie_model_params params;
     ptie_model *model, *back;
     ptie_model_params_init(&params);
-    params = (ptie_model_params){.struct_size = params.struct_size, .levels = 4, .width = {3, 4, 5, 6},
-                                 .in_channels = 2, .output = PTIE_LINEAR, .dropout = 0.25,
-                                 .bn_epsilon = 1e-5, .bn_momentum = 0.9, .seed = 77};
+    params = (ptie_model_params){.struct_size = params.struct_size,
+                                 .levels = 4,
+                                 .width = {3, 4, 5, 6},
+                                 .in_channels = 2,
+                                 .output = PTIE_LINEAR,
+                                 .dropout = 0.25,
+                                 .bn_epsilon = 1e-5,
+                                 .bn_momentum = 0.9,
+                                 .seed = 77};
     assert_ok(ptie_model_create(&model, &params));
     assert_ok(ptie_model_set_note(model, "ptie.trained_on", "preset \"paper\", seed 1"));
     assert_ok(ptie_model_set_note(model, "b", "1"));
     assert_ok(ptie_model_set_note(model, "b", "2"));
-    assert_fails(ptie_model_set_note(model, "ptie.arch", "x"), PTIE_EINVAL, "describes the network");
+    assert_fails(ptie_model_set_note(model, "ptie.arch", "x"), PTIE_EINVAL,
+                 "describes the network");
     const char *path = support_temporary("model.safetensors");
     assert_ok(ptie_model_save(model, path, false));
     assert_fails(ptie_model_save(model, path, false), PTIE_EEXIST, "model.safetensors");
@@ -132,7 +142,8 @@ static void a_saved_model_comes_back_whole(void **state) {
 static void truncated_files_are_refused(void **state) {
     (void)state;
     ptie_model *model = make(2, (int32_t[]){1, 1});
-    const char *path = support_temporary("whole.safetensors"), *cut = support_temporary("cut.safetensors");
+    const char *path = support_temporary("whole.safetensors"),
+               *cut = support_temporary("cut.safetensors");
     size_t bytes;
     assert_ok(ptie_model_save(model, path, false));
     unsigned char *data = support_read(path, &bytes);
@@ -185,24 +196,45 @@ static void models_that_do_not_fit_are_explained(void **state) {
         ptie_status status;
         const char *message;
     } cases[] = {
-        {"enc1.conv2.weight", {3, 1, 3, 9}, NULL, NULL, PTIE_ESIZE,
-         "tensor 'enc1.conv2.weight' does not fit unet-3-4 (expected [3, 3, 3, 3], found [3, 1, 3, 9])"},
-        {"out.bias", {0}, NULL, NULL, PTIE_ESIZE, "'out.bias' does not fit unet-3-4 (expected [1], found no such tensor)"},
+        {"enc1.conv2.weight",
+         {3, 1, 3, 9},
+         NULL,
+         NULL,
+         PTIE_ESIZE,
+         "tensor 'enc1.conv2.weight' does not fit unet-3-4 (expected [3, 3, 3, 3], found [3, 1, 3, "
+         "9])"},
+        {"out.bias",
+         {0},
+         NULL,
+         NULL,
+         PTIE_ESIZE,
+         "'out.bias' does not fit unet-3-4 (expected [1], found no such tensor)"},
         {NULL, {0}, "ptie.arch", "unet-3-5", PTIE_ESIZE, "does not fit unet-3-5"},
         {NULL, {0}, "ptie.arch", "resnet-50", PTIE_EUNSUPPORTED, "found 'resnet-50'"},
-        {NULL, {0}, "ptie.arch", "unet-1-2-3-4-5-6-7", PTIE_EUNSUPPORTED, "found 'unet-1-2-3-4-5-6-7'"},
+        {NULL,
+         {0},
+         "ptie.arch",
+         "unet-1-2-3-4-5-6-7",
+         PTIE_EUNSUPPORTED,
+         "found 'unet-1-2-3-4-5-6-7'"},
         {NULL, {0}, "ptie.arch", "unet-8", PTIE_EFORMAT, "levels is out of range"},
         {NULL, {0}, "ptie.arch", NULL, PTIE_EFORMAT, "metadata 'ptie.arch' is missing"},
         {NULL, {0}, "ptie.bn_eps", NULL, PTIE_EFORMAT, "metadata 'ptie.bn_eps' is missing"},
         {NULL, {0}, "ptie.bn_eps", "small", PTIE_EFORMAT, "found 'small'"},
         {NULL, {0}, "ptie.bn_eps", "-1", PTIE_EFORMAT, "bn_epsilon is out of range"},
         {NULL, {0}, "ptie.in_channels", "1e30", PTIE_EFORMAT, "in_channels is out of range"},
-        {NULL, {0}, "ptie.output", "tanh", PTIE_EUNSUPPORTED, "expected 'sigmoid' or 'linear', found 'tanh'"},
+        {NULL,
+         {0},
+         "ptie.output",
+         "tanh",
+         PTIE_EUNSUPPORTED,
+         "expected 'sigmoid' or 'linear', found 'tanh'"},
         {NULL, {0}, "ptie.normalise", "zscore", PTIE_EUNSUPPORTED, "found 'zscore'"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const int64_t *shape = cases[i].shape[0] ? cases[i].shape : NULL;
-        const char *path = save_changed(model, cases[i].tensor, shape, cases[i].key, cases[i].value);
+        const char *path =
+            save_changed(model, cases[i].tensor, shape, cases[i].key, cases[i].value);
         assert_fails(ptie_model_load(&none, path), cases[i].status, cases[i].message);
         assert_null(none);
     }
@@ -215,12 +247,14 @@ static void damaged_weights_are_refused(void **state) {
     const char *path = support_temporary("damaged.safetensors");
     model->values[ptie_graph_find(&model->graph, "enc1.conv1.weight")->offset + 3] = NAN;
     assert_ok(ptie_model_save(model, path, false));
-    assert_fails(ptie_model_load(&none, path), PTIE_EFORMAT, "tensor 'enc1.conv1.weight' is damaged");
+    assert_fails(ptie_model_load(&none, path), PTIE_EFORMAT,
+                 "tensor 'enc1.conv1.weight' is damaged");
     model->values[ptie_graph_find(&model->graph, "enc1.conv1.weight")->offset + 3] = 0;
     model->values[ptie_graph_find(&model->graph, "dec1.bn2.running_var")->offset] = -1;
     assert_ok(ptie_model_save(model, path, true));
     assert_fails(ptie_model_load(&none, path), PTIE_EFORMAT, "expected variances, found -1 at 0");
-    assert_fails(ptie_model_load(&none, support_temporary("none.safetensors")), PTIE_EIO, "none.safetensors");
+    assert_fails(ptie_model_load(&none, support_temporary("none.safetensors")), PTIE_EIO,
+                 "none.safetensors");
     assert_fails(ptie_model_load(&none, NULL), PTIE_EINVAL, "path is missing");
     ptie_model_free(model);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The training step: derivatives by finite differences for members of the family that the golden values do not
- * cover, and results that do not depend on threads.
+/* The training step: derivatives by finite differences for members of the family that the golden
+ * values do not cover, and results that do not depend on threads.
  */
 #include "support/support.h"
 
@@ -30,7 +30,8 @@ static void fill_samples(ptie_stepper *stepper, int32_t batch, int32_t channels,
     for (int32_t n = 0; n < batch; n++) {
         float *noisy = ptie_stepper_noisy(stepper, n), *clean = ptie_stepper_clean(stepper, n);
         for (int32_t i = 0; i < height * width; i++)
-            clean[i] = (float)(0.5 + 0.4 * sin(0.2 * (i % width) + n) * cos(0.3 * (double)(i / width)));
+            clean[i] =
+                (float)(0.5 + 0.4 * sin(0.2 * (i % width) + n) * cos(0.3 * (double)(i / width)));
         for (int32_t i = 0; i < channels * height * width; i++)
             noisy[i] = clean[i % (height * width)] + 0.2f * (float)ptie_random_normal(&random);
     }
@@ -44,9 +45,10 @@ static double mean_loss(ptie_stepper *stepper, int32_t batch) {
     return sum / batch;
 }
 
-/* Slope of the loss along the gradient, by central differences: it must be the gradient's length.  A study of steps
-   showed: above 1e-4 ReLUs that open on the way bend the loss (by 2 % at 3e-4), below 1e-5 the rounding of
-   the network (1e-7) shows.  The mean over two steps between was off by 8e-4 at worst. */
+/* Slope of the loss along the gradient, by central differences: it must be the gradient's length.
+   A study of steps showed: above 1e-4 ReLUs that open on the way bend the loss (by 2 % at 3e-4),
+   below 1e-5 the rounding of the network (1e-7) shows.  The mean over two steps between was off by
+   8e-4 at worst. */
 static void check_slope(const ptie_model_params *params, int32_t height, int32_t width) {
     enum { BATCH = 2 };
     ptie_engine engine;
@@ -123,7 +125,8 @@ static double loss_by_definition(const double *x, const float *y, int32_t width,
                 yy += w * ((double)y[at] - my) * ((double)y[at] - my);
                 xy += w * (x[at] - mx) * ((double)y[at] - my);
             }
-            ssim += (2 * mx * my + 1e-4) * (2 * xy + 9e-4) / ((mx * mx + my * my + 1e-4) * (xx + yy + 9e-4));
+            ssim += (2 * mx * my + 1e-4) * (2 * xy + 9e-4) /
+                    ((mx * mx + my * my + 1e-4) * (xx + yy + 9e-4));
         }
     ssim /= (height - 10) * (width - 10);
     for (int32_t i = 0; i < height * width; i++) {
@@ -149,9 +152,10 @@ static void loss_gradient_is_the_derivative(void **state) {
     void *scratch = ptie_scratch_alloc(ptie_loss_scratch(WIDTH, HEIGHT));
     for (int level = 0; level <= (int)ptie_cpu_detect(); level++) {
         ptie_loss_parts parts;
-        ptie_loss_evaluate(ptie_kernels_of((ptie_cpu_level)level), &parts, gradient, estimate, clean, WIDTH,
-                           HEIGHT, paper_weights, 1, scratch);
-        /* Variances come from differences of means of squares: 1e-7 of the squares, against C2 = 9e-4. */
+        ptie_loss_evaluate(ptie_kernels_of((ptie_cpu_level)level), &parts, gradient, estimate,
+                           clean, WIDTH, HEIGHT, paper_weights, 1, scratch);
+        /* Variances come from differences of means of squares: 1e-7 of the squares, against C2 =
+         * 9e-4. */
         assert_near(parts.loss, loss_by_definition(x, clean, WIDTH, HEIGHT), 2e-6);
         const double h = 1e-6; /* truncation 1e-12, rounding 1e-10, of gradients around 1e-3 */
         for (int i = 0; i < COUNT; i += 5) {
@@ -234,10 +238,12 @@ static void a_short_batch_ignores_the_rest(void **state) {
         ptie_stepper *stepper;
         size_t count;
         assert_ok(ptie_nn_create(&model, &params));
-        assert_ok(ptie_stepper_create(&stepper, &engine, model, run ? 3 : BATCH, SIZE, SIZE, paper_weights));
+        assert_ok(ptie_stepper_create(&stepper, &engine, model, run ? 3 : BATCH, SIZE, SIZE,
+                                      paper_weights));
         fill_samples(stepper, run ? 3 : BATCH, 1, SIZE, SIZE);
         assert_ok(ptie_stepper_gradients(stepper, 3, 0, 1, parts[run]));
-        memcpy(gradients[run], ptie_stepper_state(stepper, 0, "enc1.conv1.weight", &count), sizeof gradients[run]);
+        memcpy(gradients[run], ptie_stepper_state(stepper, 0, "enc1.conv1.weight", &count),
+               sizeof gradients[run]);
         ptie_stepper_free(stepper);
         ptie_nn_free(model);
     }
@@ -254,16 +260,18 @@ static void sizes_that_do_not_fit_are_named(void **state) {
     ptie_stepper *stepper;
     assert_ok(ptie_engine_start(&engine, 1, "auto"));
     assert_ok(ptie_nn_create(&model, &params));
-    assert_fails(ptie_stepper_create(&stepper, &engine, model, 1, 30, 32, paper_weights), PTIE_ESIZE,
-                 "expected multiples of 4 from 11 on, found 30 x 32");
+    assert_fails(ptie_stepper_create(&stepper, &engine, model, 1, 30, 32, paper_weights),
+                 PTIE_ESIZE, "expected multiples of 4 from 11 on, found 30 x 32");
     assert_null(stepper);
-    assert_fails(ptie_stepper_create(&stepper, &engine, model, 1, 8, 32, paper_weights), PTIE_ESIZE, "8 x 32");
+    assert_fails(ptie_stepper_create(&stepper, &engine, model, 1, 8, 32, paper_weights), PTIE_ESIZE,
+                 "8 x 32");
     ptie_nn_free(model);
     ptie_engine_stop(&engine);
 }
 
-/* Dropout keeps the mean: with a linear head and no ReLU in between it would be exact; here the share of zeros in
-   the mask is what can be seen, from the loss of two steps that differ in nothing else. */
+/* Dropout keeps the mean: with a linear head and no ReLU in between it would be exact; here the
+   share of zeros in the mask is what can be seen, from the loss of two steps that differ in nothing
+   else. */
 static void dropout_depends_on_the_step_only(void **state) {
     (void)state;
     ptie_model_params params = family(2, (int32_t[]){4, 6});

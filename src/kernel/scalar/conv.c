@@ -20,7 +20,8 @@ static double dot_row(const float *a, const float *b, int32_t width) {
 void ptie_conv3x3_scalar(const ptie_map *out, const ptie_map *in, const float *weights,
                          const float *bias, bool relu) {
     for (int32_t o = 0; o < out->channels; o++) {
-        const float *block = weights + (ptrdiff_t)(o / PTIE_CONV_BLOCK) * in->channels * 9 * PTIE_CONV_BLOCK;
+        const float *block =
+            weights + (ptrdiff_t)(o / PTIE_CONV_BLOCK) * in->channels * 9 * PTIE_CONV_BLOCK;
         for (int32_t y = 0; y < out->height; y++) {
             float *to = row_of(out, o, y);
             const float *w = block + o % PTIE_CONV_BLOCK;
@@ -41,7 +42,8 @@ void ptie_conv3x3_weights_scalar(double *grad, const ptie_map *out_grad, const p
             for (int ky = -1; ky <= 1; ky++)
                 for (int kx = -1; kx <= 1; kx++, grad++)
                     for (int32_t y = 0; y < out_grad->height; y++)
-                        *grad += dot_row(row_of(out_grad, o, y), row_of(in, i, y + ky) + kx, out_grad->width);
+                        *grad += dot_row(row_of(out_grad, o, y), row_of(in, i, y + ky) + kx,
+                                         out_grad->width);
 }
 
 void ptie_conv1x1_scalar(const ptie_map *out, const ptie_map *in, const float *weights,
@@ -50,7 +52,8 @@ void ptie_conv1x1_scalar(const ptie_map *out, const ptie_map *in, const float *w
         for (int32_t y = 0; y < out->height; y++) {
             fill_row(row_of(out, o, y), bias ? bias[o] : 0, out->width);
             for (int32_t i = 0; i < in->channels; i++)
-                add_row(row_of(out, o, y), row_of(in, i, y), weights[o * in->channels + i], out->width);
+                add_row(row_of(out, o, y), row_of(in, i, y), weights[o * in->channels + i],
+                        out->width);
         }
 }
 

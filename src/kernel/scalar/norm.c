@@ -39,7 +39,8 @@ void ptie_normalise_sums_scalar(double *sums, const ptie_map *grad, const ptie_m
         }
 }
 
-void ptie_normalise_backward_scalar(const ptie_map *grad, const ptie_map *z, const ptie_norm *norms) {
+void ptie_normalise_backward_scalar(const ptie_map *grad, const ptie_map *z,
+                                    const ptie_norm *norms) {
     for (int32_t c = 0; c < z->channels; c++)
         for (int32_t y = 0; y < z->height; y++) {
             const float *from = row_of(z, c, y);

@@ -12,12 +12,13 @@ void ptie_maxpool_scalar(const ptie_map *out, const ptie_map *in) {
             const float *top = row_of(in, c, 2 * y), *bottom = row_of(in, c, 2 * y + 1);
             float *to = row_of(out, c, y);
             for (int32_t x = 0; x < out->width; x++)
-                to[x] = max2(max2(top[2 * x], top[2 * x + 1]), max2(bottom[2 * x], bottom[2 * x + 1]));
+                to[x] =
+                    max2(max2(top[2 * x], top[2 * x + 1]), max2(bottom[2 * x], bottom[2 * x + 1]));
         }
 }
 
-void ptie_maxpool_backward_scalar(const ptie_map *in_grad, const ptie_map *out_grad, const ptie_map *in,
-                                  const ptie_map *out) {
+void ptie_maxpool_backward_scalar(const ptie_map *in_grad, const ptie_map *out_grad,
+                                  const ptie_map *in, const ptie_map *out) {
     for (int32_t c = 0; c < out->channels; c++)
         for (int32_t y = 0; y < out->height; y++)
             for (int32_t x = 0; x < out->width; x++) {
@@ -25,11 +26,13 @@ void ptie_maxpool_backward_scalar(const ptie_map *in_grad, const ptie_map *out_g
                 while (first < 3 &&
                        row_of(in, c, 2 * y + first / 2)[2 * x + first % 2] != row_of(out, c, y)[x])
                     first++;
-                row_of(in_grad, c, 2 * y + first / 2)[2 * x + first % 2] += row_of(out_grad, c, y)[x];
+                row_of(in_grad, c, 2 * y + first / 2)[2 * x + first % 2] +=
+                    row_of(out_grad, c, y)[x];
             }
 }
 
-/* Pixel `to` of the finer axis lies between `near` (weight 3/4) and `far` (weight 1/4) of the coarser. */
+/* Pixel `to` of the finer axis lies between `near` (weight 3/4) and `far` (weight 1/4) of the
+ * coarser. */
 static void neighbours(int32_t to, int32_t size, int32_t *near, int32_t *far) {
     *near = to / 2;
     *far = to % 2 ? *near + 1 : *near - 1;

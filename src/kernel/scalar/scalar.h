@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Reference twins of the kernels: written to be read, and what the vector kernels are tested against. */
+/* Reference twins of the kernels: written to be read, and what the vector kernels are tested
+ * against. */
 #ifndef PTIE_KERNEL_SCALAR_H
 #define PTIE_KERNEL_SCALAR_H
 

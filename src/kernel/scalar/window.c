@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The separable window of SSIM and its adjoint (L3): columns first, into `row`, then along the row. */
+/* The separable window of SSIM and its adjoint (L3): columns first, into `row`, then along the row.
+ */
 #include "kernel/scalar/scalar.h"
 
 enum { TAPS = PTIE_SSIM_WINDOW, MARGIN = PTIE_SSIM_WINDOW - 1 };
@@ -12,8 +13,8 @@ static void along_row(float *out, const float *row, int32_t width, const float *
     }
 }
 
-void ptie_window_scalar(float *out, const float *in, int32_t width, int32_t height, const float *taps,
-                        float *row) {
+void ptie_window_scalar(float *out, const float *in, int32_t width, int32_t height,
+                        const float *taps, float *row) {
     for (int32_t y = 0; y < height - MARGIN; y++) {
         for (int32_t x = 0; x < width; x++) {
             row[x] = 0;

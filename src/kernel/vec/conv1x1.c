@@ -2,7 +2,8 @@
 /* 1x1 convolution: as fast as memory. */
 #include "kernel/vec/vec.h"
 
-void VEC(conv1x1)(const ptie_map *out, const ptie_map *in, const float *weights, const float *bias) {
+void VEC(conv1x1)(const ptie_map *out, const ptie_map *in, const float *weights,
+                  const float *bias) {
     for (int32_t y = 0; y < out->height; y++)
         for (int32_t o = 0; o < out->channels; o++)
             for (int32_t x = 0; x < out->width; x += VEC_WIDTH) {
@@ -14,7 +15,8 @@ void VEC(conv1x1)(const ptie_map *out, const ptie_map *in, const float *weights,
             }
 }
 
-void VEC(conv1x1_weights)(double *grad, double *bias_grad, const ptie_map *out_grad, const ptie_map *in) {
+void VEC(conv1x1_weights)(double *grad, double *bias_grad, const ptie_map *out_grad,
+                          const ptie_map *in) {
     for (int32_t o = 0; o < out_grad->channels; o++)
         for (int32_t y = 0; y < out_grad->height; y++) {
             const float *g = row_of(out_grad, o, y);

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* 3x3 convolution and the gradient of its weights.
  *
- * What decides is how often a loaded number is used while it is in a register.  Forward, a block of OUT output
- * channels times PIXELS vectors of pixels keeps its sums in registers: every input vector feeds OUT
- * multiply-adds, every weight PIXELS.  With 32 registers (AVX-512) 8 x 2 reaches 96-99 % of the peak; with
- * 16 (AVX2) the same block is done in two halves of 4 x 2.  The gradient of the weights keeps OUT output channels
- * times the 3 taps of a row in registers, each a vector that is summed at the end of the band.
+ * What decides is how often a loaded number is used while it is in a register.  Forward, a block of
+ * OUT output channels times PIXELS vectors of pixels keeps its sums in registers: every input
+ * vector feeds OUT multiply-adds, every weight PIXELS.  With 32 registers (AVX-512) 8 x 2 reaches
+ * 96-99 % of the peak; with 16 (AVX2) the same block is done in two halves of 4 x 2.  The gradient
+ * of the weights keeps OUT output channels times the 3 taps of a row in registers, each a vector
+ * that is summed at the end of the band.
  */
 #include <string.h>
 
@@ -19,28 +20,30 @@ enum { OUT = 4 };
 enum { PIXELS = 2 };
 
 /* What lies inside the image of a block at its edge. */
-static void store_rest(float *out, ptrdiff_t plane, const float *block, int32_t channels, int32_t width) {
+static void store_rest(float *out, ptrdiff_t plane, const float *block, int32_t channels,
+                       int32_t width) {
     for (int32_t o = 0; o < channels; o++)
         memcpy(out + o * plane, block + o * PIXELS * VEC_WIDTH, (size_t)width * sizeof *out);
 }
 
-/* OUT channels x (vectors * VEC_WIDTH) pixels at one place.  `in`: the pixel of channel 0; `weights`: of the
-   first output channel; stores `channels` x `width`. */
-INLINE void convolve_block(float *out, const ptie_map *out_map, const float *in, const ptie_map *in_map,
-                           const float *weights, const float *bias, const int vectors, int32_t channels,
-                           int32_t width, bool relu) {
+/* OUT channels x (vectors * VEC_WIDTH) pixels at one place.  `in`: the pixel of channel 0;
+   `weights`: of the first output channel; stores `channels` x `width`. */
+INLINE void convolve_block(float *out, const ptie_map *out_map, const float *in,
+                           const ptie_map *in_map, const float *weights, const float *bias,
+                           const int vectors, int32_t channels, int32_t width, bool relu) {
     vf sum[OUT][PIXELS];
-    UNROLL for (int o = 0; o < OUT; o++)
-        UNROLL for (int v = 0; v < vectors; v++) sum[o][v] = vf_splat(bias[o]);
+    UNROLL (o, OUT)
+        UNROLL (v, vectors) sum[o][v] = vf_splat(bias[o]);
     for (int32_t i = 0; i < in_map->channels; i++, in += in_map->plane) {
         const float *row = in - in_map->row - 1;
-        for (int ky = 0; ky < 3; ky++, row += in_map->row)
-            UNROLL for (int kx = 0; kx < 3; kx++, weights += PTIE_CONV_BLOCK) {
+        for (int ky = 0; ky < 3; ky++, row += in_map->row, weights += 3 * PTIE_CONV_BLOCK)
+            UNROLL (kx, 3) {
+                const float *tap = weights + kx * PTIE_CONV_BLOCK;
                 vf pixel[PIXELS];
-                UNROLL for (int v = 0; v < vectors; v++) pixel[v] = vf_load(row + kx + v * VEC_WIDTH);
-                UNROLL for (int o = 0; o < OUT; o++) {
-                    const vf weight = vf_splat(weights[o]);
-                    UNROLL for (int v = 0; v < vectors; v++) sum[o][v] += weight * pixel[v];
+                UNROLL (v, vectors) pixel[v] = vf_load(row + kx + v * VEC_WIDTH);
+                UNROLL (o, OUT) {
+                    const vf weight = vf_splat(tap[o]);
+                    UNROLL (v, vectors) sum[o][v] += weight * pixel[v];
                 }
             }
     }
@@ -48,22 +51,23 @@ INLINE void convolve_block(float *out, const ptie_map *out_map, const float *in,
     float rest[OUT * PIXELS * VEC_WIDTH];
     float *to = whole ? out : rest;
     const ptrdiff_t step = whole ? out_map->plane : PIXELS * VEC_WIDTH;
-    UNROLL for (int o = 0; o < OUT; o++)
-        UNROLL for (int v = 0; v < vectors; v++)
+    UNROLL (o, OUT)
+        UNROLL (v, vectors)
             vf_store(to + o * step + v * VEC_WIDTH, relu ? vf_positive(sum[o][v]) : sum[o][v]);
-    if (!whole) store_rest(out, out_map->plane, rest, channels, smaller(width, vectors * VEC_WIDTH));
+    if (!whole)
+        store_rest(out, out_map->plane, rest, channels, smaller(width, vectors * VEC_WIDTH));
 }
 
-static void convolve_row(const ptie_map *out, const ptie_map *in, const float *weights, const float *bias,
-                         int32_t o, int32_t y, bool relu) {
+static void convolve_row(const ptie_map *out, const ptie_map *in, const float *weights,
+                         const float *bias, int32_t o, int32_t y, bool relu) {
     const int32_t channels = smaller(out->channels - o, OUT);
     int32_t x = 0;
     for (; x + VEC_WIDTH < out->width; x += 2 * VEC_WIDTH)
-        convolve_block(row_of(out, o, y) + x, out, row_of(in, 0, y) + x, in, weights, bias, 2, channels,
-                       out->width - x, relu);
+        convolve_block(row_of(out, o, y) + x, out, row_of(in, 0, y) + x, in, weights, bias, 2,
+                       channels, out->width - x, relu);
     if (x < out->width)
-        convolve_block(row_of(out, o, y) + x, out, row_of(in, 0, y) + x, in, weights, bias, 1, channels,
-                       out->width - x, relu);
+        convolve_block(row_of(out, o, y) + x, out, row_of(in, 0, y) + x, in, weights, bias, 1,
+                       channels, out->width - x, relu);
 }
 
 void VEC(conv3x3)(const ptie_map *out, const ptie_map *in, const float *weights, const float *bias,
@@ -72,8 +76,10 @@ void VEC(conv3x3)(const ptie_map *out, const ptie_map *in, const float *weights,
     for (int32_t y = 0; y < out->height; y++)
         for (int32_t o = 0; o < out->channels; o += OUT) {
             float block_bias[OUT] = {0};
-            for (int32_t c = 0; bias && c < OUT && o + c < out->channels; c++) block_bias[c] = bias[o + c];
-            convolve_row(out, in, weights + o / PTIE_CONV_BLOCK * block_floats + o % PTIE_CONV_BLOCK,
+            for (int32_t c = 0; bias && c < OUT && o + c < out->channels; c++)
+                block_bias[c] = bias[o + c];
+            convolve_row(out, in,
+                         weights + o / PTIE_CONV_BLOCK * block_floats + o % PTIE_CONV_BLOCK,
                          block_bias, o, y, relu);
         }
 }
@@ -82,15 +88,15 @@ void VEC(conv3x3)(const ptie_map *out, const ptie_map *in, const float *weights,
 INLINE void weigh_taps(vf sum[OUT][3], const float *const row[OUT], const float *in, int32_t x,
                        int32_t width) {
     vf pixel[3];
-    UNROLL for (int k = 0; k < 3; k++) pixel[k] = vf_load(in + x + k - 1);
-    UNROLL for (int o = 0; o < OUT; o++) {
+    UNROLL (k, 3) pixel[k] = vf_load(in + x + k - 1);
+    UNROLL (o, OUT) {
         const vf g = vf_hold(vf_first(vf_load(row[o] + x), width - x));
-        UNROLL for (int k = 0; k < 3; k++) sum[o][k] += g * pixel[k];
+        UNROLL (k, 3) sum[o][k] += g * pixel[k];
     }
 }
 
-/* Adds the gradient of OUT x 3 weights: one input channel, one row of the window; `in` is the first row under
-   it.  Channels that do not exist repeat the last one and are not stored. */
+/* Adds the gradient of OUT x 3 weights: one input channel, one row of the window; `in` is the first
+   row under it.  Channels that do not exist repeat the last one and are not stored. */
 static void weights_block(double *grad, ptrdiff_t grad_step, const ptie_map *out_grad, int32_t o,
                           const float *in, ptrdiff_t in_row) {
     const int32_t channels = smaller(out_grad->channels - o, OUT);
@@ -104,8 +110,8 @@ static void weights_block(double *grad, ptrdiff_t grad_step, const ptie_map *out
         if (x < out_grad->width) weigh_taps(sum, row, in, x, out_grad->width);
         for (int c = 0; c < OUT; c++) row[c] += out_grad->row;
     }
-    UNROLL for (int c = 0; c < OUT; c++)
-        UNROLL for (int k = 0; k < 3; k++)
+    UNROLL (c, OUT)
+        UNROLL (k, 3)
             if (c < channels) grad[c * grad_step + k] += vf_sum(sum[c][k]);
 }
 
@@ -114,6 +120,6 @@ void VEC(conv3x3_weights)(double *grad, const ptie_map *out_grad, const ptie_map
     for (int32_t o = 0; o < out_grad->channels; o += OUT)
         for (int32_t i = 0; i < in->channels; i++)
             for (int32_t ky = 0; ky < 3; ky++)
-                weights_block(grad + o * step + i * 9 + ky * 3, step, out_grad, o, row_of(in, i, ky - 1),
-                              in->row);
+                weights_block(grad + o * step + i * 9 + ky * 3, step, out_grad, o,
+                              row_of(in, i, ky - 1), in->row);
 }

@@ -24,7 +24,8 @@ void VEC(normalise)(const ptie_map *out, const ptie_map *z, const ptie_norm *nor
             const float *from = row_of(z, c, y);
             float *to = row_of(out, c, y);
             for (int32_t x = 0; x < z->width; x += VEC_WIDTH)
-                vf_store_first(to + x, vf_positive(scale * vf_load(from + x) + shift), z->width - x);
+                vf_store_first(to + x, vf_positive(scale * vf_load(from + x) + shift),
+                               z->width - x);
         }
     }
 }
@@ -34,7 +35,8 @@ INLINE vf open_gradient(vf g, vf z, const ptie_norm *norm) {
     return (vf)((z * vf_splat(norm->scale) + vf_splat(norm->shift) > 0) & (vi)g);
 }
 
-void VEC(normalise_sums)(double *sums, const ptie_map *grad, const ptie_map *z, const ptie_norm *norms) {
+void VEC(normalise_sums)(double *sums, const ptie_map *grad, const ptie_map *z,
+                         const ptie_norm *norms) {
     for (int32_t c = 0; c < z->channels; c++) {
         const vf mean = vf_splat(norms[c].mean), inverse_std = vf_splat(norms[c].inverse_std);
         for (int32_t y = 0; y < z->height; y++) {

@@ -9,7 +9,8 @@ void VEC(maxpool)(const ptie_map *out, const ptie_map *in) {
             float *to = row_of(out, c, y);
             for (int32_t x = 0; x < out->width; x += VEC_WIDTH) {
                 const vf a = vf_max(vf_load(top + 2 * x), vf_load(bottom + 2 * x));
-                const vf b = vf_max(vf_load(top + 2 * x + VEC_WIDTH), vf_load(bottom + 2 * x + VEC_WIDTH));
+                const vf b =
+                    vf_max(vf_load(top + 2 * x + VEC_WIDTH), vf_load(bottom + 2 * x + VEC_WIDTH));
                 vf_store_first(to + x, vf_max(vf_even(a, b), vf_odd(a, b)), out->width - x);
             }
         }
@@ -28,8 +29,10 @@ void VEC(maxpool_backward)(const ptie_map *in_grad, const ptie_map *out_grad, co
     for (int32_t c = 0; c < out->channels; c++)
         for (int32_t y = 0; y < out->height; y++)
             for (int32_t x = 0; x < out->width; x += VEC_WIDTH) {
-                const float *top = row_of(in, c, 2 * y) + 2 * x, *bottom = row_of(in, c, 2 * y + 1) + 2 * x;
-                const vf top0 = vf_load(top), top1 = vf_load(top + VEC_WIDTH), bottom0 = vf_load(bottom);
+                const float *top = row_of(in, c, 2 * y) + 2 * x,
+                            *bottom = row_of(in, c, 2 * y + 1) + 2 * x;
+                const vf top0 = vf_load(top), top1 = vf_load(top + VEC_WIDTH),
+                         bottom0 = vf_load(bottom);
                 const vf maximum = vf_load(row_of(out, c, y) + x);
                 const vi g = (vi)vf_load(row_of(out_grad, c, y) + x);
                 const vi first = vf_even(top0, top1) == maximum;
@@ -38,8 +41,10 @@ void VEC(maxpool_backward)(const ptie_map *in_grad, const ptie_map *out_grad, co
                     (vf_even(bottom0, vf_load(bottom + VEC_WIDTH)) == maximum) & ~(first | second);
                 const vi fourth = ~(first | second | third);
                 const int32_t left = 2 * (out->width - x);
-                add_pairs(row_of(in_grad, c, 2 * y) + 2 * x, (vf)(first & g), (vf)(second & g), left);
-                add_pairs(row_of(in_grad, c, 2 * y + 1) + 2 * x, (vf)(third & g), (vf)(fourth & g), left);
+                add_pairs(row_of(in_grad, c, 2 * y) + 2 * x, (vf)(first & g), (vf)(second & g),
+                          left);
+                add_pairs(row_of(in_grad, c, 2 * y + 1) + 2 * x, (vf)(third & g), (vf)(fourth & g),
+                          left);
             }
 }
 
@@ -56,7 +61,8 @@ static void upsample_row(float *out, const float *near, const float *far, int32_
         const vf right = blend(near + x + 1, far + x + 1);
         const vf even = most * here + rest * left, odd = most * here + rest * right;
         vf_store_first(out + 2 * x, vf_interleave_low(even, odd), 2 * (width - x));
-        vf_store_first(out + 2 * x + VEC_WIDTH, vf_interleave_high(even, odd), 2 * (width - x) - VEC_WIDTH);
+        vf_store_first(out + 2 * x + VEC_WIDTH, vf_interleave_high(even, odd),
+                       2 * (width - x) - VEC_WIDTH);
     }
     /* Where the neighbour was the halo, the edge continues. */
     out[0] = 0.75f * near[0] + 0.25f * far[0];
@@ -76,8 +82,10 @@ void VEC(upsample)(const ptie_map *out, const ptie_map *in) {
 
 /* Weighted sum of four rows of the finer image: 2y-1, 2y, 2y+1, 2y+2. */
 INLINE vf blend4(const float *const rows[4], const float weights[4], int32_t x) {
-    return vf_splat(weights[0]) * vf_load(rows[0] + x) + vf_splat(weights[1]) * vf_load(rows[1] + x) +
-           (vf_splat(weights[2]) * vf_load(rows[2] + x) + vf_splat(weights[3]) * vf_load(rows[3] + x));
+    return vf_splat(weights[0]) * vf_load(rows[0] + x) +
+           vf_splat(weights[1]) * vf_load(rows[1] + x) +
+           (vf_splat(weights[2]) * vf_load(rows[2] + x) +
+            vf_splat(weights[3]) * vf_load(rows[3] + x));
 }
 
 void VEC(upsample_backward)(const ptie_map *in_grad, const ptie_map *out_grad) {
@@ -88,11 +96,13 @@ void VEC(upsample_backward)(const ptie_map *in_grad, const ptie_map *out_grad) {
             const float weights[4] = {y > 0 ? 0.25f : 0, y > 0 ? 0.75f : 1, y < last ? 0.75f : 1,
                                       y < last ? 0.25f : 0};
             const float *const rows[4] = {row_of(out_grad, c, y > 0 ? 2 * y - 1 : 0),
-                                          row_of(out_grad, c, 2 * y), row_of(out_grad, c, 2 * y + 1),
+                                          row_of(out_grad, c, 2 * y),
+                                          row_of(out_grad, c, 2 * y + 1),
                                           row_of(out_grad, c, y < last ? 2 * y + 2 : 2 * y + 1)};
             float *to = row_of(in_grad, c, y);
             for (int32_t x = 0; x < width; x += VEC_WIDTH) {
-                const vf a = blend4(rows, weights, 2 * x), b = blend4(rows, weights, 2 * x + VEC_WIDTH);
+                const vf a = blend4(rows, weights, 2 * x),
+                         b = blend4(rows, weights, 2 * x + VEC_WIDTH);
                 const vf before = vf_even(blend4(rows, weights, 2 * x - 1),
                                           blend4(rows, weights, 2 * x - 1 + VEC_WIDTH));
                 const vf after = vf_even(blend4(rows, weights, 2 * x + 2),

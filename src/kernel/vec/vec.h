@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The vocabulary the vector kernels are written in, once for all instruction sets.  The build compiles every
- * file of this folder per level with PTIE_VEC_WIDTH (floats per register) and PTIE_VEC_LEVEL (suffix of the
- * symbols); GCC's and Clang's vector extension does the rest.  a * b + c is fused here (-ffp-contract=fast).
+/* The vocabulary the vector kernels are written in, once for all instruction sets.  The build
+ * compiles every file of this folder per level with PTIE_VEC_WIDTH (floats per register) and
+ * PTIE_VEC_LEVEL (suffix of the symbols); GCC's and Clang's vector extension does the rest.  a * b
+ * + c is fused here (-ffp-contract=fast).
  */
 #ifndef PTIE_KERNEL_VEC_H
 #define PTIE_KERNEL_VEC_H
@@ -19,10 +20,12 @@
 enum { VEC_WIDTH = PTIE_VEC_WIDTH };
 
 #define INLINE static inline __attribute__((always_inline))
+/* for (i = 0 .. count - 1), with the body written out `count` times: what lets an array live in
+ * registers. */
 #ifdef __clang__
-#define UNROLL _Pragma("clang loop unroll(full)")
+#define UNROLL(i, count) _Pragma("clang loop unroll(full)") for (int i = 0; i < (count); i++)
 #else
-#define UNROLL _Pragma("GCC unroll 32")
+#define UNROLL(i, count) _Pragma("GCC unroll 32") for (int i = 0; i < (count); i++)
 #endif
 
 typedef float vf __attribute__((vector_size(4 * PTIE_VEC_WIDTH)));
@@ -70,7 +73,7 @@ INLINE vf vf_positive(vf a) {
 /* Lanes first .. of an array of `count` floats that exist; the others 0. */
 INLINE vf vf_first(vf value, int32_t count) {
     vi lane;
-    UNROLL for (int i = 0; i < VEC_WIDTH; i++) lane[i] = i;
+    UNROLL (i, VEC_WIDTH) lane[i] = i;
     return (vf)((lane < count) & (vi)value);
 }
 

@@ -27,15 +27,15 @@ void VEC(window)(float *out, const float *in, int32_t width, int32_t height, con
     }
 }
 
-void VEC(window_adjoint)(float *out, const float *in, int32_t width, int32_t height, const float *taps,
-                         float *row) {
+void VEC(window_adjoint)(float *out, const float *in, int32_t width, int32_t height,
+                         const float *taps, float *row) {
     const int32_t in_width = width - MARGIN, in_height = height - MARGIN;
     for (int32_t x = 0; x < MARGIN; x++) row[x] = row[MARGIN + in_width + x] = 0;
     for (int32_t y = 0; y < height; y++) {
         /* Rows y-10 .. y of the smaller image, as far as they exist; the taps are symmetric. */
         const int32_t first = y > MARGIN ? y - MARGIN : 0, last = smaller(y, in_height - 1);
-        weigh(row + MARGIN, in + (ptrdiff_t)first * in_width, in_width, taps + (first - (y - MARGIN)),
-              last - first + 1, in_width);
+        weigh(row + MARGIN, in + (ptrdiff_t)first * in_width, in_width,
+              taps + (first - (y - MARGIN)), last - first + 1, in_width);
         weigh(out + (ptrdiff_t)y * width, row, 1, taps, TAPS, width);
     }
 }
