@@ -6,7 +6,6 @@
  * of TIE falls as 1/k^4 in power: in the values it is all clouds, in the gradients it is mild, and
  * what the network kept decides.
  */
-#include <math.h>
 #include <string.h>
 
 #include "base/image.h"
@@ -17,7 +16,10 @@ static float skew_sign(const float *map, size_t count) {
     double mean = 0, third = 0;
     for (size_t i = 0; i < count; i++) mean += (double)map[i];
     mean /= (double)count;
-    for (size_t i = 0; i < count; i++) third += pow((double)map[i] - mean, 3);
+    for (size_t i = 0; i < count; i++) {
+        double d = (double)map[i] - mean;
+        third += d * d * d;
+    }
     return third < 0 ? -1 : 1;
 }
 
