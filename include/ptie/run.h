@@ -76,4 +76,21 @@ typedef struct ptie_run_summary {
 PTIE_API PTIE_NODISCARD ptie_status ptie_run(ptie_ctx *ctx, const ptie_run_params *params,
                                              ptie_run_summary *summary, ptie_progress progress);
 
+typedef struct ptie_denoise_params {
+    uint32_t struct_size;    /* set by ptie_denoise_params_init */
+    const ptie_model *model; /* required */
+    const char *input;       /* recording of phase, rad; required */
+    const char *output;      /* recording to write, of any kind ptie_writer_create knows; required */
+    int32_t polarity;        /* as ptie_denoiser_run_rad, default 0 */
+    bool overwrite;
+} ptie_denoise_params;
+
+PTIE_API void ptie_denoise_params_init(ptie_denoise_params *params);
+
+/* Denoises every frame of a recording of phase with ptie_denoiser_run_rad, in constant memory.  The output
+   appears whole or not at all.  Errors: those of ptie_recording_read, ptie_denoiser_create and
+   ptie_writer_create; PTIE_ECANCELLED. */
+PTIE_API PTIE_NODISCARD ptie_status ptie_denoise(ptie_ctx *ctx, const ptie_denoise_params *params,
+                                                 ptie_progress progress);
+
 #endif

@@ -4,6 +4,7 @@
 
 #include "api/context.h"
 #include "api/params.h"
+#include "run/denoise.h"
 #include "run/rig.h"
 #include "run/run.h"
 
@@ -61,4 +62,21 @@ ptie_status ptie_run(ptie_ctx *ctx, const ptie_run_params *params, ptie_run_summ
     PTIE_TRY(check_rig(&rig));
     own.rig = &rig;
     return ptie_run_pipeline(&ctx->engine, &own, summary, progress);
+}
+
+void ptie_denoise_params_init(ptie_denoise_params *params) {
+    *params = (ptie_denoise_params){.struct_size = sizeof *params};
+}
+
+ptie_status ptie_denoise(ptie_ctx *ctx, const ptie_denoise_params *params, ptie_progress progress) {
+    static const char where[] = "ptie_denoise";
+    ptie_denoise_params own;
+    ptie_denoise_params_init(&own);
+    PTIE_TRY(ptie_check_pointer(ctx, where, "ctx"));
+    PTIE_TRY(ptie_params_read(&own, sizeof own, params, where));
+    PTIE_TRY(ptie_check_pointer(own.model, where, "model"));
+    PTIE_TRY(ptie_check_pointer(own.input, where, "input"));
+    PTIE_TRY(ptie_check_pointer(own.output, where, "output"));
+    PTIE_TRY(ptie_check_integer(own.polarity, -1, 1, where, "polarity"));
+    return ptie_denoise_recording(&ctx->engine, &own, progress);
 }

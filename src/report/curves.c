@@ -22,6 +22,9 @@
 #define TALLEST 220.0
 #define LEGEND_LINE 10.0
 #define LEGEND_SAMPLE 16.0
+#define LEGEND_GAP 14.0  /* between entries side by side */
+#define LEGEND_PLACES 30 /* that a legend inside a plot tries */
+#define LINE_POINTS 8    /* of a line between two points that are looked at */
 
 typedef struct axis {
     double low, high;
@@ -215,35 +218,52 @@ static int32_t labelled(const ptie_axes *axes) {
     return count;
 }
 
-/* Points of all curves inside a rectangle. */
-static size_t points_inside(const plot *p, cairo_rectangle_t box) {
-    size_t inside = 0;
-    for (int32_t c = 0; c < p->axes->count; c++) {
-        const ptie_curve *curve = &p->axes->curves[c];
-        for (size_t i = 0; i < curve->count; i++) {
-            if (!shown(p, curve, i)) continue;
-            double x = place_x(p, curve->x[i]) - box.x, y = place_y(p, curve->y[i]) - box.y;
-            inside += x >= -3 && x <= box.width + 3 && y >= -3 && y <= box.height + 3;
+/* How much of a curve runs through a rectangle: its points, and points on the lines between them. */
+static size_t hidden(const plot *p, const ptie_curve *curve, cairo_rectangle_t box) {
+    size_t count = 0;
+    for (size_t i = 0; i < curve->count; i++) {
+        if (!shown(p, curve, i)) continue;
+        size_t next = i + 1 < curve->count && shown(p, curve, i + 1) ? i + 1 : i;
+        double x0 = place_x(p, curve->x[i]), x1 = place_x(p, curve->x[next]);
+        double y0 = place_y(p, curve->y[i]), y1 = place_y(p, curve->y[next]);
+        for (int k = 0; k < LINE_POINTS; k++) {
+            double x = x0 + (x1 - x0) * k / LINE_POINTS - box.x;
+            double y = y0 + (y1 - y0) * k / LINE_POINTS - box.y;
+            count += x >= -3 && x <= box.width + 3 && y >= -3 && y <= box.height + 3;
         }
     }
-    return inside;
+    return count;
 }
 
-/* The corner that hides the fewest points. */
+/* The place at the right or left edge, from top to bottom, that hides the least. */
 static cairo_rectangle_t legend_box(const plot *p, double width, double height) {
     cairo_rectangle_t best = {0};
-    size_t fewest = SIZE_MAX;
-    for (int corner = 0; corner < 4; corner++) {
-        bool left = corner % 2, bottom = corner / 2;
+    size_t least = SIZE_MAX;
+    for (int place = 0; place < LEGEND_PLACES; place++) {
+        bool left = place % 2;
+        double down = (double)(place / 2) / (LEGEND_PLACES / 2 - 1);
         cairo_rectangle_t box = {left ? p->box.x + 4 : p->box.x + p->box.width - width - 4,
-                                 bottom ? p->box.y + p->box.height - height - 4 : p->box.y + 4, width,
-                                 height};
-        size_t inside = points_inside(p, box);
-        if (inside < fewest) best = box, fewest = inside;
+                                 p->box.y + 4 + down * (p->box.height - height - 8), width, height};
+        size_t count = 0;
+        for (int32_t c = 0; c < p->axes->count; c++) count += hidden(p, &p->axes->curves[c], box);
+        if (count < least) best = box, least = count;
     }
     return best;
 }
 
+/* Sample of the line and label, from x on, with the line at y. */
+static void draw_legend_entry(cairo_t *cr, const ptie_curve *curve, double x, double y) {
+    set_pen(cr, curve);
+    cairo_move_to(cr, x, y);
+    cairo_rel_line_to(cr, LEGEND_SAMPLE, 0);
+    cairo_stroke(cr);
+    if (curve->markers) dot(cr, x + LEGEND_SAMPLE / 2, y);
+    cairo_set_dash(cr, NULL, 0, 0);
+    ptie_set_colour(cr, 0);
+    ptie_text_at(cr, curve->label, x + LEGEND_SAMPLE + 4, y + 2.5, 0);
+}
+
+/* Inside the plot, one entry below the other. */
 static void draw_legend(cairo_t *cr, const plot *p) {
     const ptie_axes *axes = p->axes;
     if (labelled(axes) == 0) return;
@@ -257,20 +277,45 @@ static void draw_legend(cairo_t *cr, const plot *p) {
     cairo_fill(cr);
     double y = box.y + 2 + LEGEND_LINE / 2;
     for (int32_t c = 0; c < axes->count; c++) {
-        const ptie_curve *curve = &axes->curves[c];
-        if (!curve->label) continue;
-        set_pen(cr, curve);
-        cairo_move_to(cr, box.x + 3, y);
-        cairo_rel_line_to(cr, LEGEND_SAMPLE, 0);
-        cairo_stroke(cr);
-        if (curve->markers) dot(cr, box.x + 3 + LEGEND_SAMPLE / 2, y);
-        ptie_set_colour(cr, 0);
-        ptie_text_at(cr, curve->label, box.x + LEGEND_SAMPLE + 7, y + 2.5, 0);
+        if (!axes->curves[c].label) continue;
+        draw_legend_entry(cr, &axes->curves[c], box.x + 3, y);
         y += LEGEND_LINE;
     }
 }
 
-static void draw_plot(cairo_t *cr, const plot *p, int32_t index, bool letter) {
+static bool same_entry(const ptie_curve *a, const ptie_curve *b) {
+    if (!a->label || !b->label) return a->label == b->label;
+    return strcmp(a->label, b->label) == 0 && a->colour == b->colour && a->dashed == b->dashed &&
+           a->markers == b->markers;
+}
+
+/* Axes with the same legend get it once, above all of them. */
+static bool share_legend(const ptie_axes *axes, int32_t count) {
+    if (count < 2 || labelled(&axes[0]) == 0) return false;
+    for (int32_t i = 1; i < count; i++) {
+        if (axes[i].count != axes[0].count) return false;
+        for (int32_t c = 0; c < axes[0].count; c++)
+            if (!same_entry(&axes[i].curves[c], &axes[0].curves[c])) return false;
+    }
+    return true;
+}
+
+/* The entries side by side, centred in the figure. */
+static void draw_shared_legend(cairo_t *cr, const ptie_axes *axes, double width, double y) {
+    double total = -LEGEND_GAP;
+    ptie_set_type(cr, PTIE_SMALL, false);
+    for (int32_t c = 0; c < axes->count; c++)
+        if (axes->curves[c].label)
+            total += LEGEND_SAMPLE + 4 + ptie_text_width(cr, axes->curves[c].label) + LEGEND_GAP;
+    double x = (width - total) / 2;
+    for (int32_t c = 0; c < axes->count; c++) {
+        if (!axes->curves[c].label) continue;
+        draw_legend_entry(cr, &axes->curves[c], x, y);
+        x += LEGEND_SAMPLE + 4 + ptie_text_width(cr, axes->curves[c].label) + LEGEND_GAP;
+    }
+}
+
+static void draw_plot(cairo_t *cr, const plot *p, int32_t index, bool letter, bool legend) {
     char title[256];
     draw_frame(cr, p);
     cairo_save(cr);
@@ -278,7 +323,7 @@ static void draw_plot(cairo_t *cr, const plot *p, int32_t index, bool letter) {
     cairo_clip(cr);
     for (int32_t c = 0; c < p->axes->count; c++) draw_curve(cr, p, &p->axes->curves[c]);
     cairo_set_dash(cr, NULL, 0, 0);
-    draw_legend(cr, p);
+    if (legend) draw_legend(cr, p);
     cairo_restore(cr);
     const char *name = p->axes->title ? p->axes->title : "";
     if (letter) snprintf(title, sizeof title, "%c) %s", 'a' + index % 26, name);
@@ -299,16 +344,21 @@ static double lay_out(plot *plots, int32_t count, double cell, double top) {
     return top + TITLE + height + BELOW;
 }
 
-static void draw(cairo_t *cr, const plot *plots, int32_t count, const char *title, double width) {
+static void draw(cairo_t *cr, const plot *plots, int32_t count, const char *title, double width,
+                 bool shared) {
+    double y = MARGIN;
     ptie_set_type(cr, PTIE_LARGE, true);
-    ptie_text_within(cr, title, width / 2, MARGIN + PTIE_LARGE, 0.5, width - 2 * MARGIN);
-    for (int32_t i = 0; i < count; i++) draw_plot(cr, &plots[i], i, count > 1);
+    ptie_text_within(cr, title, width / 2, y + PTIE_LARGE, 0.5, width - 2 * MARGIN);
+    if (title) y += HEADLINE;
+    if (shared) draw_shared_legend(cr, plots[0].axes, width, y + LEGEND_LINE / 2);
+    for (int32_t i = 0; i < count; i++) draw_plot(cr, &plots[i], i, count > 1, !shared);
 }
 
 ptie_status ptie_draw_curves(const char *path, const ptie_axes *axes, int32_t count,
                              const char *title, double width_mm, bool overwrite) {
     double width = (width_mm > 0 ? width_mm : PTIE_FIGURE_WIDTH_MM) * PTIE_POINTS_PER_MM;
     double cell = (width - 2 * MARGIN - GAP * (count - 1)) / count;
+    bool shared = share_legend(axes, count);
     if (cell < 80) return PTIE_FAIL(PTIE_EINVAL, "%s: too narrow for %d axes", path, (int)count);
     plot *plots;
     PTIE_TRY(ptie_alloc_status(&plots, (size_t)count, sizeof *plots, "figure"));
@@ -316,11 +366,12 @@ ptie_status ptie_draw_curves(const char *path, const ptie_axes *axes, int32_t co
         plots[i].axes = &axes[i];
         set_ranges(&plots[i]);
     }
-    double height = lay_out(plots, count, cell, MARGIN + (title ? HEADLINE : 0));
+    double top = MARGIN + (title ? HEADLINE : 0) + (shared ? LEGEND_LINE + 3 : 0);
+    double height = lay_out(plots, count, cell, top);
     ptie_canvas canvas;
     ptie_status status = ptie_canvas_open(&canvas, path, width, height, overwrite);
     if (status == PTIE_OK) {
-        draw(canvas.cr, plots, count, title, width);
+        draw(canvas.cr, plots, count, title, width, shared);
         status = ptie_canvas_close(&canvas);
     }
     ptie_free(plots);

@@ -105,7 +105,8 @@ static void draw_panel(cairo_t *cr, const layout *l, int32_t row, int32_t column
     ptie_limits span = span_at(l, row, column);
     cairo_rectangle_t box = map_box(l, panel, column, y);
     ptie_set_type(cr, PTIE_NORMAL, false);
-    ptie_text_within(cr, panel->title, box.x + box.width / 2, y - 3.5, 0.5, l->column);
+    ptie_text_within(cr, panel->title, box.x + box.width / 2, y - 3.5, 0.5,
+                     l->column + GAP - 2);
     ptie_draw_map(cr, panel, span, box);
     if (!l->beside)
         ptie_draw_bar_below(cr, panel->colormap, span, panel->unit, box.x, y + box.height + 3, box.width);

@@ -10,12 +10,13 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/text.h"
-#include "io/h5.h"
+#include "io/nexus.h"
 #include "optics/optics.h"
 
-#define PLUS "/entry/data/plus"
-#define MINUS "/entry/data/minus"
-#define TRUTH "/entry/truth/phase"
+#define PLUS PTIE_NEXUS_DATA "/plus"
+#define MINUS PTIE_NEXUS_DATA "/minus"
+#define TRUTH_GROUP "/entry/truth"
+#define TRUTH TRUTH_GROUP "/phase"
 
 #define PARAMETRIC_RAD 1.0 /* phase of the value 1 unless the caller says */
 
@@ -91,22 +92,13 @@ static ptie_status prepare(simulation *s, ptie_pool *pool) {
     return find_factor(s);
 }
 
-/* A NeXus group of maps over time. */
-static ptie_status describe_group(ptie_h5 *h5, const char *group, const char *signal) {
-    static const char *const axes[] = {"frame", "y", "x"};
-    PTIE_TRY(ptie_h5_set_text(h5, group, "NX_class", "NXdata"));
-    PTIE_TRY(ptie_h5_set_text(h5, group, "signal", signal));
-    return ptie_h5_set_texts(h5, group, "axes", axes, 3);
-}
-
-static ptie_status describe_maps(ptie_h5 *h5, const simulation *s, const char *path, const char *unit) {
-    const ptie_simulate_params *p = s->params;
+static ptie_status describe_truth(ptie_h5 *h5, const ptie_simulate_params *p) {
     const uint64_t dims[3] = {(uint64_t)p->frames, (uint64_t)p->flow.height_px, (uint64_t)p->flow.width_px};
-    /* Contiguous: chunks would lie in the order of the blocks, which is that of the threads. */
-    PTIE_TRY(ptie_h5_dataset(h5, path, PTIE_H5_F32, 3, dims, 0));
-    PTIE_TRY(ptie_h5_set_text(h5, path, "units", unit));
-    PTIE_TRY(ptie_h5_set_number(h5, path, "pixel_m", p->flow.pixel_m));
-    return ptie_h5_set_number(h5, path, "frame_rate_hz", p->frame_rate_hz);
+    PTIE_TRY(ptie_h5_set_text(h5, TRUTH_GROUP, "NX_class", "NXdata"));
+    PTIE_TRY(ptie_h5_set_text(h5, TRUTH_GROUP, "signal", "phase"));
+    PTIE_TRY(ptie_h5_dataset(h5, TRUTH, PTIE_H5_F32, 3, dims, 1));
+    PTIE_TRY(ptie_h5_set_text(h5, TRUTH, "long_name", "True phase"));
+    return ptie_h5_set_text(h5, TRUTH, "units", "rad");
 }
 
 static ptie_status describe_simulation(ptie_h5 *h5, const ptie_simulate_params *p) {
@@ -125,16 +117,29 @@ static ptie_status describe_simulation(ptie_h5 *h5, const ptie_simulate_params *
     return ptie_h5_set_number(h5, process, "noise", p->noise);
 }
 
-static ptie_status describe(ptie_h5 *h5, const simulation *s) {
-    PTIE_TRY(ptie_h5_set_text(h5, "/", "default", "entry"));
-    PTIE_TRY(ptie_h5_set_text(h5, "/entry", "NX_class", "NXentry"));
-    PTIE_TRY(ptie_h5_set_text(h5, "/entry", "default", "data"));
-    PTIE_TRY(describe_group(h5, "/entry/data", "plus"));
-    PTIE_TRY(describe_group(h5, "/entry/truth", "phase"));
-    PTIE_TRY(describe_maps(h5, s, PLUS, "I/I0"));
-    PTIE_TRY(describe_maps(h5, s, MINUS, "I/I0"));
-    PTIE_TRY(describe_maps(h5, s, TRUTH, "rad"));
-    return describe_simulation(h5, s->params);
+static ptie_status describe(ptie_h5 *h5, const ptie_simulate_params *p) {
+    static const ptie_nexus_signal planes[] = {{"plus", "Intensity beyond focus", "I/I0"},
+                                               {"minus", "Intensity before focus", "I/I0"}};
+    const ptie_nexus_axes axes = {.frames = (uint64_t)p->frames,
+                                  .width_px = p->flow.width_px,
+                                  .height_px = p->flow.height_px,
+                                  .frame_rate_hz = p->frame_rate_hz,
+                                  .pixel_m = p->flow.pixel_m};
+    PTIE_TRY(ptie_nexus_begin(h5, &axes, planes, 2));
+    PTIE_TRY(describe_truth(h5, p));
+    return describe_simulation(h5, p);
+}
+
+/* Frame by frame, so that the file does not show how long a block was. */
+static ptie_status write_block(ptie_h5 *h5, const simulation *s, uint64_t count) {
+    for (uint64_t i = 0; i < count; i++) {
+        uint64_t frame = (uint64_t)s->first + i;
+        size_t at = (size_t)i * s->pixels;
+        PTIE_TRY(ptie_h5_write(h5, PLUS, PTIE_H5_F32, frame, 1, s->plus + at));
+        PTIE_TRY(ptie_h5_write(h5, MINUS, PTIE_H5_F32, frame, 1, s->minus + at));
+        PTIE_TRY(ptie_h5_write(h5, TRUTH, PTIE_H5_F32, frame, 1, s->phase + at));
+    }
+    return PTIE_OK;
 }
 
 static ptie_status write_frames(ptie_h5 *h5, simulation *s, ptie_pool *pool, ptie_progress progress) {
@@ -143,9 +148,7 @@ static ptie_status write_frames(ptie_h5 *h5, simulation *s, ptie_pool *pool, pti
         uint64_t count = frames - first < s->block ? frames - first : s->block;
         s->first = (int64_t)first;
         PTIE_TRY(ptie_pool_run(pool, (size_t)count, simulate_frame, s));
-        PTIE_TRY(ptie_h5_write(h5, PLUS, PTIE_H5_F32, first, count, s->plus));
-        PTIE_TRY(ptie_h5_write(h5, MINUS, PTIE_H5_F32, first, count, s->minus));
-        PTIE_TRY(ptie_h5_write(h5, TRUTH, PTIE_H5_F32, first, count, s->phase));
+        PTIE_TRY(write_block(h5, s, count));
         first += count;
         PTIE_TRY(ptie_progress_report(progress, first, frames, NULL));
     }
@@ -155,7 +158,7 @@ static ptie_status write_frames(ptie_h5 *h5, simulation *s, ptie_pool *pool, pti
 static ptie_status write_recording(simulation *s, ptie_pool *pool, ptie_progress progress) {
     ptie_h5 *h5;
     PTIE_TRY(ptie_h5_create(&h5, s->params->output, s->params->overwrite));
-    ptie_status status = describe(h5, s);
+    ptie_status status = describe(h5, s->params);
     if (status == PTIE_OK) status = write_frames(h5, s, pool, progress);
     if (status == PTIE_OK) return ptie_h5_close(h5);
     ptie_h5_discard(h5);

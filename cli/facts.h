@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Names and values, as lines for people or as one JSON object. */
+#ifndef CLI_FACTS_H
+#define CLI_FACTS_H
+
+#include <ptie/export.h>
+
+enum { MOST_FACTS = 32, FACT_BYTES = 256 };
+
+typedef struct facts {
+    struct {
+        const char *name; /* "frame rate"; in JSON "frame_rate" */
+        char text[FACT_BYTES];
+        double number;
+        bool is_number;
+    } fact[MOST_FACTS];
+    int count;
+} facts;
+
+void add_text(facts *facts, const char *name, const char *format, ...) PTIE_PRINTF(3, 4);
+/* `format` is what people read; programs get the number. */
+void add_number(facts *facts, const char *name, double number, const char *format, ...) PTIE_PRINTF(4, 5);
+void print_facts(const facts *facts, bool json);
+
+/* "29,777" */
+const char *with_separators(char text[32], uint64_t number);
+
+#endif

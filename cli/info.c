@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* ptie info: what is in a recording, data set, model, rig, preset; what this machine runs. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "cli.h"
+#include "facts.h"
+
+static const char examples[] =
+    "  ptie info                            # this machine\n"
+    "  ptie info models/paper.safetensors   # a model\n"
+    "  ptie info jet.h5:/entry/data/plus    # a recording\n"
+    "  ptie info paper > mine.ini           # a preset, to edit\n";
+
+/* With the digits that people care about: 25 kHz, not 24.999999999999996 kHz. */
+static void add_quantity(facts *f, const char *name, double value, ptie_quantity quantity) {
+    char digits[32], text[PTIE_QUANTITY_BYTES];
+    snprintf(digits, sizeof digits, "%.6g", value);
+    add_number(f, name, value, "%s", ptie_print_quantity(text, strtod(digits, NULL), quantity));
+}
+
+static ptie_status describe_machine(facts *f) {
+    ptie_ctx *ctx;
+    ptie_status status = ptie_ctx_create(&ctx, NULL);
+    if (status != PTIE_OK) return status;
+    char names[FACT_BYTES] = "";
+    size_t used = 0;
+    add_text(f, "version", "%s", ptie_version());
+    add_text(f, "kernels", "%s", ptie_ctx_cpu(ctx));
+    add_number(f, "threads", ptie_ctx_threads(ctx), "%d", ptie_ctx_threads(ctx));
+    for (int32_t i = 0; ptie_preset_name(i); i++)
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", ptie_preset_name(i));
+    add_text(f, "presets", "%s", names);
+    ptie_ctx_free(ctx);
+    return PTIE_OK;
+}
+
+static ptie_status describe_model(facts *f, const char *path) {
+    static const char *const notes[][2] = {{"trained on", "ptie.trained_on"},
+                                           {"epochs", "ptie.epochs"},
+                                           {"seed", "ptie.seed"},
+                                           {"written by", "ptie.version"}};
+    ptie_model *model;
+    char number[32], widths[FACT_BYTES] = "";
+    size_t used = 0;
+    ptie_status status = ptie_model_load(&model, path);
+    if (status != PTIE_OK) return status;
+    const ptie_model_params *p = ptie_model_get_params(model);
+    for (int32_t i = 0; i < p->levels; i++)
+        used += (size_t)snprintf(widths + used, sizeof widths - used, "%s%d", i ? ", " : "", p->width[i]);
+    add_text(f, "kind", "model");
+    add_text(f, "name", "%s", ptie_model_name(model));
+    add_number(f, "parameters", (double)ptie_model_trainable(model), "%s trainable",
+               with_separators(number, ptie_model_trainable(model)));
+    add_number(f, "levels", p->levels, "%d (%s channels)", p->levels, widths);
+    add_number(f, "inputs", p->in_channels, "%d channel%s", p->in_channels, p->in_channels > 1 ? "s" : "");
+    add_text(f, "output", "%s", p->output == PTIE_SIGMOID ? "sigmoid" : "linear");
+    for (size_t i = 0; i < COUNT(notes); i++) {
+        const char *text = ptie_model_note(model, notes[i][1]);
+        if (text) add_text(f, notes[i][0], "%s", text);
+    }
+    ptie_model_free(model);
+    return PTIE_OK;
+}
+
+static ptie_status describe_dataset(facts *f, const char *path) {
+    static const struct {
+        const char *name;
+        ptie_split split;
+    } splits[] = {{"samples", PTIE_ALL}, {"train", PTIE_TRAIN}, {"validation", PTIE_VALIDATION}, {"test", PTIE_TEST}};
+    ptie_dataset *dataset;
+    int32_t width, height;
+    char number[32];
+    ptie_status status = ptie_dataset_open(&dataset, path);
+    if (status != PTIE_OK) return status;
+    ptie_dataset_size(dataset, &width, &height);
+    add_text(f, "kind", "data set");
+    add_text(f, "size", "%d x %d px", width, height);
+    for (size_t i = 0; i < COUNT(splits); i++) {
+        uint64_t count = ptie_dataset_count(dataset, splits[i].split);
+        add_number(f, splits[i].name, (double)count, "%s", with_separators(number, count));
+    }
+    ptie_dataset_free(dataset);
+    return PTIE_OK;
+}
+
+/* Range and mean of the first frame. */
+static ptie_status describe_values(facts *f, ptie_recording *recording) {
+    const ptie_recording_info *info = ptie_recording_get_info(recording);
+    size_t count = (size_t)info->width_px * (size_t)info->height_px;
+    float *frame = ptie_scratch_alloc(count * sizeof *frame);
+    ptie_status status = frame ? ptie_recording_read(recording, 0, frame) : PTIE_ENOMEM;
+    if (status == PTIE_OK) {
+        double low = (double)frame[0], high = low, sum = 0;
+        for (size_t i = 0; i < count; i++) {
+            double value = (double)frame[i];
+            low = value < low ? value : low;
+            high = value > high ? value : high;
+            sum += value;
+        }
+        add_text(f, "first frame", "%.6g .. %.6g, mean %.6g", low, high, sum / (double)count);
+    }
+    ptie_scratch_free(frame);
+    return status;
+}
+
+static ptie_status describe_recording(facts *f, const char *path) {
+    ptie_recording *recording;
+    ptie_status status = ptie_recording_open(&recording, path);
+    if (status != PTIE_OK) return status;
+    const ptie_recording_info *info = ptie_recording_get_info(recording);
+    add_text(f, "kind", "recording");
+    add_text(f, "format", "%s", info->format);
+    if (info->dataset[0]) add_text(f, "data set", "%s", info->dataset);
+    add_number(f, "frames", (double)info->frames, "%lld", (long long)info->frames);
+    add_number(f, "width", info->width_px, "%d px", info->width_px);
+    add_number(f, "height", info->height_px, "%d px", info->height_px);
+    add_text(f, "sample", "%s", info->sample);
+    if (info->unit[0]) add_text(f, "unit", "%s", info->unit);
+    if (info->pixel_m > 0) add_quantity(f, "pixel", info->pixel_m, PTIE_LENGTH);
+    if (info->frame_rate_hz > 0) add_quantity(f, "frame rate", info->frame_rate_hz, PTIE_RATE);
+    status = info->frames > 0 ? describe_values(f, recording) : PTIE_OK;
+    ptie_recording_close(recording);
+    return status;
+}
+
+static void add_path(facts *f, const char *name, const char *path) {
+    if (path[0]) add_text(f, name, "%s", path);
+}
+
+static void describe_rig(facts *f, const ptie_rig *rig) {
+    static const char *const planes[] = {"pair", "triple", "reference"};
+    static const char *const polarities[] = {"negative", "auto", "positive"};
+    add_text(f, "kind", "rig");
+    add_quantity(f, "wavelength", rig->wavelength_m, PTIE_LENGTH);
+    add_quantity(f, "pixel", rig->pixel_m, PTIE_LENGTH);
+    add_quantity(f, "defocus plus", rig->defocus_plus_m, PTIE_LENGTH);
+    if (rig->planes != PTIE_PLANES_REFERENCE)
+        add_quantity(f, "defocus minus", rig->defocus_minus_m, PTIE_LENGTH);
+    add_text(f, "planes", "%s", planes[rig->planes]);
+    add_path(f, "plus", rig->plus);
+    add_path(f, "zero", rig->zero);
+    add_path(f, "minus", rig->minus);
+    add_path(f, "reference", rig->reference);
+    add_text(f, "polarity", "%s", polarities[rig->polarity + 1]);
+    add_number(f, "binning", rig->binning, "%d", rig->binning);
+    add_text(f, "boundary", "%s", rig->boundary == PTIE_PERIODIC ? "periodic" : "mirror");
+    if (rig->cutoff_m > 0) add_quantity(f, "cutoff", rig->cutoff_m, PTIE_LENGTH);
+    if (rig->frame_rate_hz > 0) add_quantity(f, "frame rate", rig->frame_rate_hz, PTIE_RATE);
+}
+
+/* A preset is shown as its own text, which reads back. */
+static ptie_status print_preset(const char *name) {
+    ptie_preset *preset;
+    ptie_status status = ptie_preset_load(&preset, name);
+    if (status != PTIE_OK) return status;
+    printf("%s", ptie_preset_text(preset));
+    ptie_preset_free(preset);
+    return PTIE_OK;
+}
+
+static bool ends_in(const char *path, const char *ending) {
+    size_t length = strlen(path), tail = strlen(ending);
+    return length > tail && strcasecmp(path + length - tail, ending) == 0;
+}
+
+static bool is_built_in(const char *name) {
+    for (int32_t i = 0; ptie_preset_name(i); i++)
+        if (strcmp(ptie_preset_name(i), name) == 0) return true;
+    return false;
+}
+
+/* INI files are rigs or presets.  If it is neither, what the rig's reader says is the message. */
+static ptie_status describe_ini(facts *f, const char *path) {
+    ptie_rig rig;
+    ptie_rig_init(&rig);
+    ptie_status status = ptie_rig_load(&rig, path);
+    if (status == PTIE_OK) describe_rig(f, &rig);
+    else if (print_preset(path) == PTIE_OK) status = PTIE_OK;
+    else status = ptie_rig_load(&rig, path);
+    return status;
+}
+
+static ptie_status describe_file(facts *f, const char *path) {
+    if (ends_in(path, ".ini")) return describe_ini(f, path);
+    if (ends_in(path, ".safetensors")) return describe_model(f, path);
+    if (ends_in(path, ".h5") && describe_dataset(f, path) == PTIE_OK) return PTIE_OK;
+    return describe_recording(f, path);
+}
+
+int info_command(int argc, char **argv) {
+    bool json = false;
+    const option options[] = {{0, "json", OPTION_FLAG, &json, .help = "as JSON"}};
+    const command_usage usage = {.name = "info",
+                         .purpose = "Tells what is in a recording, data set, model, rig file or preset; without "
+                                    "a name, what this machine runs.",
+                         .examples = examples,
+                         .synopsis = "[FILE | PRESET] [--json]",
+                         .most = 1,
+                         .options = options,
+                         .count = COUNT(options)};
+    operand_list operands;
+    facts f = {.count = 0};
+    int code = parse_options(&usage, argc, argv, &operands);
+    if (code != GO_ON) return code;
+    const char *name = operands.count ? operands.value[0] : NULL;
+    ptie_status status = !name               ? describe_machine(&f)
+                         : is_built_in(name) ? print_preset(name)
+                                             : describe_file(&f, name);
+    if (status != PTIE_OK) return failed(status);
+    if (f.count > 0) print_facts(&f, json);
+    return DONE;
+}

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* ptie run and ptie reconstruct: the pipeline, with and without a model. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli.h"
+#include "json.h"
+#include "maps_figure.h"
+#include "measures.h"
+
+static const char run_examples[] =
+    "  # pairs of planes in one HDF5 file; the rig says how they were taken\n"
+    "  ptie run --rig jet.ini jet.h5 --model models/paper.safetensors -o phase.h5\n\n"
+    "  # planes in two files\n"
+    "  ptie run --rig lab.ini plus.tif minus.tif --model m.safetensors -o phase.h5\n\n"
+    "  # numbered images of a plume, with a no-flow reference named in the rig\n"
+    "  ptie run --rig plume.ini 'plume/flow_%02d.png' --model m.safetensors \\\n"
+    "      -o plume.h5 --figure plume.png --metrics plume.csv\n";
+
+static const char reconstruct_examples[] =
+    "  ptie reconstruct --rig jet.ini jet.h5 -o phase.h5\n"
+    "  ptie reconstruct --rig lab.ini plus.tif zero.tif minus.tif -o phase.h5\n";
+
+static const char notes[] =
+    "RECORDING is one file with all planes, or one file per plane: plus minus, or\n"
+    "plus zero minus. Files: HDF5 (FILE.h5 or FILE.h5:/path/inside), TIFF, NPY, PNG,\n"
+    "a folder of numbered images, or a pattern with one %d.\n\n"
+    "The table has mean and standard deviation over frames: MGM, mean gradient in\n"
+    "the jet; SBR, mean jet / mean background; BNS, deviation of the background;\n"
+    "CNR, contrast over noise; with --truth also RMSE and correlation.\n";
+
+typedef struct settings {
+    compute_options compute;
+    ptie_run_params params;
+    const char *rig_path, *model_path, *figure;
+    int64_t figure_frame; /* of those processed; -1: the middle */
+    bool json;
+    ptie_rig rig;
+    char *provenance;
+} settings;
+
+/* One file with all planes, or plus minus, or plus zero minus. */
+static void assign_planes(ptie_run_params *p, const operand_list *files) {
+    p->plus = files->value[0];
+    p->minus = files->count > 1 ? files->value[files->count - 1] : NULL;
+    p->zero = files->count > 2 ? files->value[1] : NULL;
+}
+
+static int check(settings *s, const char *name, bool with_model) {
+    ptie_run_params *p = &s->params;
+    if (!s->rig_path) return misused("%s: missing rig (expected --rig FILE.ini)", name);
+    if (with_model && !s->model_path) return misused("%s: missing model (expected --model FILE.safetensors)", name);
+    if (!p->output) return misused("%s: missing output (expected -o FILE.h5)", name);
+    if (!p->jet.width_px != !p->background.width_px)
+        return misused("%s: --jet and --background belong together", name);
+    p->overwrite = s->compute.force;
+    return GO_ON;
+}
+
+static int parse(settings *s, const char *name, bool with_model, int argc, char **argv) {
+    ptie_run_params *p = &s->params;
+    const option options[] = {
+        /* Must stay the first: reconstruct leaves it out. */
+        {'m', "model", OPTION_TEXT, &s->model_path, "FILE", .help = "denoising network (.safetensors)"},
+        {'r', "rig", OPTION_TEXT, &s->rig_path, "FILE", .help = "how the set-up is built (.ini)"},
+        {'o', "output", OPTION_TEXT, &p->output, "FILE", .help = "result to write (.h5)"},
+        {0, "reference", OPTION_TEXT, &p->reference, "FILE", .help = "no-flow recording, instead of the rig's"},
+        {0, "first", OPTION_INT64, &p->first, "N", .high = INT64_MAX, .help = "first frame"},
+        {'n', "count", OPTION_INT64, &p->count, "N", .high = INT64_MAX, .help = "frames; 0 = to the end"},
+        {0, "step", OPTION_INT64, &p->step, "N", .low = 1, .high = INT64_MAX, .help = "every N-th frame"},
+        {0, "truth", OPTION_TEXT, &p->truth, "FILE", .help = "true phase to compare with"},
+        {0, "jet", OPTION_RECT, &p->jet, "x,y,w,h", .help = "region of the flow, pixels of the phase"},
+        {0, "background", OPTION_RECT, &p->background, "x,y,w,h",
+         .help = "region without flow; if no regions are given, they are proposed from the result"},
+        {0, "metrics", OPTION_TEXT, &p->metrics_csv, "FILE", .help = "metrics of every frame as a table (.csv)"},
+        {0, "figure", OPTION_TEXT, &s->figure, "FILE", .help = "draw a frame: intensity and phase (.png or .svg)"},
+        {0, "figure-frame", OPTION_INT64, &s->figure_frame, "N", .low = -1, .high = INT64_MAX,
+         .help = "which of the frames processed; -1 = the middle one"},
+        {0, "json", OPTION_FLAG, &s->json, .help = "summary as JSON instead of a table"},
+        COMPUTE_OPTIONS(s->compute),
+    };
+    const command_usage usage = {
+        .name = name,
+        .purpose = with_model ? "Takes a recording to phase in rad and to denoised phase, and measures both."
+                              : "Takes a recording to phase in rad, by the transport-of-intensity equation.",
+        .examples = with_model ? run_examples : reconstruct_examples,
+        .synopsis = with_model ? "--rig FILE RECORDING... --model FILE -o FILE.h5 [options]"
+                               : "--rig FILE RECORDING... -o FILE.h5 [options]",
+        .notes = notes,
+        .least = 1,
+        .most = 3,
+        .operand = "RECORDING",
+        .options = options + (with_model ? 0 : 1),
+        .count = COUNT(options) - (with_model ? 0 : 1)};
+    operand_list files;
+    int code = parse_options(&usage, argc, argv, &files);
+    if (code != GO_ON) return code;
+    assign_planes(p, &files);
+    return check(s, name, with_model);
+}
+
+static void print_summary(const settings *s, const ptie_run_summary *r) {
+    measured columns[] = {{"TIE phase", "phase", r->phase}, {"denoised", "denoised", r->denoised}};
+    int count = s->params.model ? 2 : 1;
+    double rate = r->seconds > 0 ? (double)r->frames / r->seconds : 0;
+    if (s->json) {
+        printf("{\n  \"output\": ");
+        json_text(stdout, s->params.output);
+        printf(",\n  \"frames\": %lld,\n  \"width_px\": %d,\n  \"height_px\": %d,\n  \"pixel_m\": ",
+               (long long)r->frames, r->width_px, r->height_px);
+        json_number(stdout, r->pixel_m);
+        printf(",\n  \"seconds\": ");
+        json_number(stdout, r->seconds);
+        printf(",\n");
+        print_measures_json(columns, count);
+        printf("}\n");
+        return;
+    }
+    char pixel[PTIE_QUANTITY_BYTES];
+    printf("%lld frames of %d x %d px, %s each, in %.3g s (%.4g frames/s)\n\n", (long long)r->frames,
+           r->width_px, r->height_px, ptie_print_quantity(pixel, r->pixel_m, PTIE_LENGTH), r->seconds, rate);
+    print_measures(columns, count);
+}
+
+static ptie_status draw(const settings *s, const ptie_run_summary *summary) {
+    int64_t frame = s->figure_frame < 0 ? summary->frames / 2 : s->figure_frame;
+    return draw_maps(s->figure, &s->params, frame, summary->pixel_m);
+}
+
+static ptie_status compute_run(settings *s, const char *name, ptie_run_summary *summary) {
+    progress_bar progress;
+    ptie_ctx *ctx = NULL;
+    ptie_model *model = NULL;
+    ptie_status status = ptie_rig_load(&s->rig, s->rig_path);
+    if (status == PTIE_OK && s->model_path) status = ptie_model_load(&model, s->model_path);
+    if (status == PTIE_OK) status = open_context(&ctx, &s->compute);
+    if (status == PTIE_OK) {
+        s->params.rig = &s->rig;
+        s->params.model = model;
+        s->params.provenance = s->provenance;
+        progress_start(&progress, s->compute.progress, name, "frames");
+        status = ptie_run(ctx, &s->params, summary, progress_callback(&progress));
+        progress_end(&progress);
+    }
+    if (status == PTIE_OK && s->figure) status = draw(s, summary);
+    if (status == PTIE_OK) print_summary(s, summary);
+    ptie_ctx_free(ctx);
+    ptie_model_free(model);
+    return status;
+}
+
+static int pipeline(bool with_model, int argc, char **argv) {
+    const char *name = with_model ? "run" : "reconstruct";
+    settings s = {.compute = COMPUTE_DEFAULTS, .figure_frame = -1};
+    ptie_run_summary summary;
+    ptie_rig_init(&s.rig);
+    ptie_run_params_init(&s.params);
+    int code = parse(&s, name, with_model, argc, argv);
+    if (code != GO_ON) return code;
+    s.provenance = joined_command(argc, argv);
+    ptie_status status = compute_run(&s, name, &summary);
+    free(s.provenance);
+    return status == PTIE_OK ? DONE : failed(status);
+}
+
+int run_command(int argc, char **argv) {
+    return pipeline(true, argc, argv);
+}
+
+int reconstruct_command(int argc, char **argv) {
+    return pipeline(false, argc, argv);
+}
