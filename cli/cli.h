@@ -61,4 +61,10 @@ char *joined_command(int argc, char **argv);
 /* `path` with its ending replaced, "jet.h5" -> "jet.ini"; false when it does not fit. */
 bool replace_ending(char *out, size_t bytes, const char *path, const char *ending);
 
+bool ends_in(const char *path, const char *ending); /* upper or lower case */
+
+/* Finds out before long work whether a figure can be written after it.  GO_ON, or the exit code after a
+   message; fine with NULL. */
+int check_figure(const char *path, bool force);
+
 #endif

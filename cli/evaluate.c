@@ -54,8 +54,9 @@ static int parse(settings *s, int argc, char **argv) {
                          .count = COUNT(options)};
     operand_list operands;
     int code = parse_options(&usage, argc, argv, &operands);
+    if (code != GO_ON) return code;
     s->model = operands.value[0];
-    return code;
+    return check_figure(s->figure, s->compute.force);
 }
 
 static void print_scores_json(const char *name, const ptie_scores *s, const char *end) {

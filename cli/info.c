@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "cli.h"
 #include "facts.h"
@@ -159,11 +158,6 @@ static ptie_status print_preset(const char *name) {
     printf("%s", ptie_preset_text(preset));
     ptie_preset_free(preset);
     return PTIE_OK;
-}
-
-static bool ends_in(const char *path, const char *ending) {
-    size_t length = strlen(path), tail = strlen(ending);
-    return length > tail && strcasecmp(path + length - tail, ending) == 0;
 }
 
 static bool is_built_in(const char *name) {

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
+#include <unistd.h>
 
 #include "cli.h"
 
@@ -40,13 +42,20 @@ void say(const char *format, ...) {
     va_end(arguments);
 }
 
+/* The library's messages may begin with the name of the function that was called, which users never see. */
+static const char *without_function(const char *message) {
+    size_t name = strspn(message, "abcdefghijklmnopqrstuvwxyz_");
+    bool is_function = strncmp(message, "ptie_", 5) == 0 && strncmp(message + name, ": ", 2) == 0;
+    return is_function ? message + name + 2 : message;
+}
+
 int failed(ptie_status status) {
     if (status == PTIE_ECANCELLED && interrupted()) {
         say("ptie: interrupted");
         return 128 + interrupted();
     }
     /* Memory that the program itself did not get leaves no message in the library. */
-    say("ptie: %s", status == PTIE_ENOMEM ? "out of memory" : ptie_last_error());
+    say("ptie: %s", status == PTIE_ENOMEM ? "out of memory" : without_function(ptie_last_error()));
     return status == PTIE_EINVAL || status == PTIE_ENAME ? MISUSED : FAILED;
 }
 
@@ -75,6 +84,20 @@ bool replace_ending(char *out, size_t bytes, const char *path, const char *endin
     const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
     size_t stem = dot && dot > path && (!slash || dot > slash + 1) ? (size_t)(dot - path) : strlen(path);
     return (size_t)snprintf(out, bytes, "%.*s%s", (int)stem, path, ending) < bytes;
+}
+
+bool ends_in(const char *path, const char *ending) {
+    size_t length = strlen(path), tail = strlen(ending);
+    return length > tail && strcasecmp(path + length - tail, ending) == 0;
+}
+
+int check_figure(const char *path, bool force) {
+    if (!path) return GO_ON;
+    if (!ends_in(path, ".png") && !ends_in(path, ".svg"))
+        return misused("%s: not a kind of figure (expected a name ending in .png or .svg)", path);
+    if (force || access(path, F_OK) != 0) return GO_ON;
+    say("ptie: %s: exists already (use -f to overwrite)", path);
+    return FAILED;
 }
 
 static const command *find_command(const char *name) {
@@ -129,7 +152,7 @@ int main(int argc, char **argv) {
     }
     catch_interrupts();
     int code = dispatch(argc, argv);
-    if (fflush(stdout) == 0) return code;
+    if (fflush(stdout) == 0 && !ferror(stdout)) return code;
     say("ptie: cannot write to standard output");
     return code ? code : FAILED;
 }

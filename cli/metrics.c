@@ -59,9 +59,10 @@ static int parse(settings *s, int argc, char **argv) {
                          .options = options,
                          .count = COUNT(options)};
     int code = parse_options(&usage, argc, argv, &s->files);
-    if (code == GO_ON && !s->jet.width_px != !s->background.width_px)
+    if (code != GO_ON) return code;
+    if (!s->jet.width_px != !s->background.width_px)
         return misused("metrics: --jet and --background belong together");
-    return code;
+    return check_figure(s->figure, s->force);
 }
 
 

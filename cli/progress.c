@@ -12,6 +12,7 @@
 #include "json.h"
 
 #define BAR_CELLS 24
+#define NOTED_CELLS 10
 
 const char *const progress_styles[] = {"auto", "bar", "plain", "json", "none", NULL};
 
@@ -21,10 +22,15 @@ static void on_signal(int number) {
     caught = number;
 }
 
+/* A signal that the parent told us to ignore (nohup, background jobs of scripts) stays ignored. */
+static void catch_signal(int number) {
+    struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND | SA_RESTART}, before;
+    if (sigaction(number, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(number, &action, NULL);
+}
+
 void catch_interrupts(void) {
-    struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND | SA_RESTART};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    catch_signal(SIGINT);
+    catch_signal(SIGTERM);
 }
 
 int interrupted(void) {
@@ -54,15 +60,18 @@ static int terminal_columns(void) {
     return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80;
 }
 
+/* With a note, the counts give way to it. */
 static void show_bar(progress_bar *p, uint64_t done, uint64_t total, double rate, const char *eta,
                      const char *note) {
-    char line[512], bar[BAR_CELLS + 1];
+    char line[512], bar[BAR_CELLS + 1], counts[96];
+    int cells = note ? NOTED_CELLS : BAR_CELLS;
     double share = total ? (double)done / (double)total : 0;
-    for (int i = 0; i < BAR_CELLS; i++) bar[i] = i < share * BAR_CELLS ? '#' : '.';
-    bar[BAR_CELLS] = 0;
-    snprintf(line, sizeof line, "%s [%s] %3.0f %%  %llu/%llu %s  %.4g/s  ETA %s%s%s", p->task, bar,
-             floor(100 * share), (unsigned long long)done, (unsigned long long)total, p->unit, rate, eta,
-             note ? "  " : "", note ? note : "");
+    for (int i = 0; i < cells; i++) bar[i] = i < share * cells ? '#' : '.';
+    bar[cells] = 0;
+    snprintf(counts, sizeof counts, "  %llu/%llu %s", (unsigned long long)done, (unsigned long long)total,
+             p->unit);
+    snprintf(line, sizeof line, "%s [%s] %3.0f %%%s  %.3g/s  ETA %s%s%s", p->task, bar, floor(100 * share),
+             note ? "" : counts, rate, eta, note ? "  " : "", note ? note : "");
     fprintf(stderr, "\r%.*s\033[K", terminal_columns() - 1, line);
     p->on_line = true;
 }
@@ -93,7 +102,7 @@ static double interval(progress_style style) {
 int progress_report(void *user, uint64_t done, uint64_t total, const char *note) {
     progress_bar *p = user;
     double now = now_s(), elapsed = now - p->start_s;
-    bool due = now - p->shown_s >= interval(p->style) || done == total;
+    bool due = now - p->shown_s >= interval(p->style) || (done == total && p->shown_done != total);
     if (p->style != PROGRESS_NONE && due) {
         double rate = elapsed > 0 ? (double)done / elapsed : 0;
         double eta_s = done > 0 ? (double)(total - done) / rate : (double)NAN;
@@ -103,6 +112,7 @@ int progress_report(void *user, uint64_t done, uint64_t total, const char *note)
         else if (p->style == PROGRESS_PLAIN) show_plain(p, done, total, rate, eta, note);
         else show_json(p, done, total, rate, eta_s, note);
         p->shown_s = now;
+        p->shown_done = done;
     }
     return interrupted();
 }

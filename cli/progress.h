@@ -19,6 +19,7 @@ typedef struct progress_bar {
     progress_style style;
     const char *task, *unit; /* "dataset", "samples" */
     double start_s, shown_s;
+    uint64_t shown_done;
     bool on_line; /* the cursor stands behind a bar */
 } progress_bar;
 

@@ -51,10 +51,12 @@ static int check(settings *s, const char *name, bool with_model) {
     if (!s->rig_path) return misused("%s: missing rig (expected --rig FILE.ini)", name);
     if (with_model && !s->model_path) return misused("%s: missing model (expected --model FILE.safetensors)", name);
     if (!p->output) return misused("%s: missing output (expected -o FILE.h5)", name);
+    if (!ends_in(p->output, ".h5") && !ends_in(p->output, ".hdf5"))
+        return misused("%s: --output: expected a name ending in .h5 or .hdf5, found '%s'", name, p->output);
     if (!p->jet.width_px != !p->background.width_px)
         return misused("%s: --jet and --background belong together", name);
     p->overwrite = s->compute.force;
-    return GO_ON;
+    return check_figure(s->figure, s->compute.force);
 }
 
 static int parse(settings *s, const char *name, bool with_model, int argc, char **argv) {

@@ -82,7 +82,7 @@ static int parse(settings *s, int argc, char **argv) {
     m->seed = t->seed;
     t->steps_limit = (uint64_t)steps;
     t->overwrite = s->compute.force;
-    return GO_ON;
+    return check_figure(s->figure, s->compute.force);
 }
 
 /* The end of an epoch stays on the screen; what happens within one is part of the bar. */

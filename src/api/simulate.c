@@ -2,6 +2,8 @@
 /* <ptie/simulate.h>: arguments checked, then inward. */
 #include <ptie/simulate.h>
 
+#include <string.h>
+
 #include "api/context.h"
 #include "api/params.h"
 #include "run/simulate.h"
@@ -23,9 +25,21 @@ void ptie_simulate_params_init(ptie_simulate_params *params) {
     ptie_flow_params_init(&params->flow);
 }
 
+/* The recording is HDF5 whatever its name; the ending keeps it apart from the rig. */
+static ptie_status check_outputs(const ptie_simulate_params *p, const char *where) {
+    PTIE_TRY(ptie_check_pointer(p->output, where, "output"));
+    const char *ending = strrchr(p->output, '.');
+    if (!ending || (strcmp(ending, ".h5") != 0 && strcmp(ending, ".hdf5") != 0))
+        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: cannot write this kind of file (expected .h5 or .hdf5)",
+                         p->output);
+    if (p->rig && strcmp(p->rig, p->output) == 0)
+        return PTIE_FAIL(PTIE_EINVAL, "%s: recording and rig need names of their own", p->output);
+    return PTIE_OK;
+}
+
 /* What the flow and the optics do not check themselves. */
 static ptie_status check(const ptie_simulate_params *p, const char *where) {
-    PTIE_TRY(ptie_check_pointer(p->output, where, "output"));
+    PTIE_TRY(check_outputs(p, where));
     PTIE_TRY(ptie_check_integer(p->frames, 1, MOST_FRAMES, where, "frames"));
     PTIE_TRY(ptie_check_positive(p->frame_rate_hz, where, "frame_rate_hz"));
     PTIE_TRY(ptie_check_number(p->amplitude_rad, 0, 1e6, where, "amplitude_rad"));

@@ -192,10 +192,10 @@ static ptie_status write_rig(const ptie_simulate_params *p) {
     return status;
 }
 
-/* Finds out before the work whether the rig can be written after it. */
-static ptie_status check_rig(const ptie_simulate_params *p) {
+/* Finds out before the work whether a file can be written after it. */
+static ptie_status check_output(const char *path, bool overwrite) {
     ptie_output_file file;
-    PTIE_TRY(ptie_output_open(&file, p->rig, p->overwrite));
+    PTIE_TRY(ptie_output_open(&file, path, overwrite));
     ptie_output_discard(&file);
     return PTIE_OK;
 }
@@ -204,7 +204,8 @@ ptie_status ptie_simulate_run(ptie_pool *pool, const ptie_simulate_params *param
                               ptie_progress progress) {
     simulation s = {.params = params};
     ptie_status status;
-    if (params->rig) PTIE_TRY(check_rig(params));
+    PTIE_TRY(check_output(params->output, params->overwrite));
+    if (params->rig) PTIE_TRY(check_output(params->rig, params->overwrite));
     PTIE_TRY_DONE(prepare(&s, pool));
     PTIE_TRY_DONE(write_recording(&s, pool, progress));
     if (params->rig) status = write_rig(params);
