@@ -41,7 +41,7 @@ static ptie_status collect(maps *m, const ptie_run_params *run, int64_t frame, d
     char path[PATH_BYTES];
     int64_t recorded = run->first + frame * run->step;
     const char *inside = run->rig->plus;
-    ptie_panel intensity = {.title = "intensity I₊", .colormap = PTIE_GRAY,
+    ptie_panel intensity = {.title = "intensity", .colormap = PTIE_GRAY,
                             .pixel_m = pixel_m / run->rig->binning};
     ptie_panel phase = {.unit = "rad", .colormap = PTIE_DIVERGING, .pixel_m = pixel_m};
 

@@ -12,19 +12,22 @@ static const char run_examples[] =
     "  # pairs of planes in one HDF5 file; the rig says how they were taken\n"
     "  ptie run --rig jet.ini jet.h5 --model models/paper.safetensors -o phase.h5\n\n"
     "  # planes in two files\n"
-    "  ptie run --rig lab.ini plus.tif minus.tif --model m.safetensors -o phase.h5\n\n"
+    "  ptie run --rig lab.ini --plus p.tif --minus m.tif --model m.safetensors \\\n"
+    "      -o phase.h5\n\n"
     "  # numbered images of a plume, with a no-flow reference named in the rig\n"
     "  ptie run --rig plume.ini 'plume/flow_%02d.png' --model m.safetensors \\\n"
     "      -o plume.h5 --figure plume.png --metrics plume.csv\n";
 
 static const char reconstruct_examples[] =
     "  ptie reconstruct --rig jet.ini jet.h5 -o phase.h5\n"
-    "  ptie reconstruct --rig lab.ini plus.tif zero.tif minus.tif -o phase.h5\n";
+    "  ptie reconstruct --rig lab.ini --plus p.tif --zero z.tif --minus m.tif \\\n"
+    "      -o phase.h5\n";
 
 static const char notes[] =
-    "RECORDING is one file with all planes, or one file per plane: plus minus, or\n"
-    "plus zero minus. Files: HDF5 (FILE.h5 or FILE.h5:/path/inside), TIFF, NPY, PNG,\n"
-    "a folder of numbered images, or a pattern with one %d.\n\n"
+    "RECORDING holds all planes (HDF5; the rig names the data sets), or the flow\n"
+    "where the rig's layout is a reference. Files: HDF5 (FILE.h5 or\n"
+    "FILE.h5:/path/inside), TIFF, NPY, PNG, a folder of numbered images, or a\n"
+    "pattern with one %d.\n\n"
     "The table has mean and standard deviation over frames: MGM, mean gradient in\n"
     "the jet; SBR, mean jet / mean background; BNS, deviation of the background;\n"
     "CNR, contrast over noise; with --truth also RMSE and correlation.\n";
@@ -39,15 +42,9 @@ typedef struct settings {
     char *provenance;
 } settings;
 
-/* One file with all planes, or plus minus, or plus zero minus. */
-static void assign_planes(ptie_run_params *p, const operand_list *files) {
-    p->plus = files->value[0];
-    p->minus = files->count > 1 ? files->value[files->count - 1] : NULL;
-    p->zero = files->count > 2 ? files->value[1] : NULL;
-}
-
 static int check(settings *s, const char *name, bool with_model) {
     ptie_run_params *p = &s->params;
+    if (!p->plus) return misused("%s: missing RECORDING (see 'ptie help %s')", name, name);
     if (!s->rig_path) return misused("%s: missing rig (expected --rig FILE.ini)", name);
     if (with_model && !s->model_path) return misused("%s: missing model (expected --model FILE.safetensors)", name);
     if (!p->output) return misused("%s: missing output (expected -o FILE.h5)", name);
@@ -66,6 +63,9 @@ static int parse(settings *s, const char *name, bool with_model, int argc, char 
         {'m', "model", OPTION_TEXT, &s->model_path, "FILE", .help = "denoising network (.safetensors)"},
         {'r', "rig", OPTION_TEXT, &s->rig_path, "FILE", .help = "how the set-up is built (.ini)"},
         {'o', "output", OPTION_TEXT, &p->output, "FILE", .help = "result to write (.h5)"},
+        {0, "plus", OPTION_TEXT, &p->plus, "FILE", .help = "planes in files of their own: beyond focus"},
+        {0, "zero", OPTION_TEXT, &p->zero, "FILE", .help = "in focus"},
+        {0, "minus", OPTION_TEXT, &p->minus, "FILE", .help = "before focus"},
         {0, "reference", OPTION_TEXT, &p->reference, "FILE", .help = "no-flow recording, instead of the rig's"},
         {0, "first", OPTION_INT64, &p->first, "N", .high = INT64_MAX, .help = "first frame"},
         {'n', "count", OPTION_INT64, &p->count, "N", .high = INT64_MAX, .help = "frames; 0 = to the end"},
@@ -86,18 +86,20 @@ static int parse(settings *s, const char *name, bool with_model, int argc, char 
         .purpose = with_model ? "Takes a recording to phase in rad and to denoised phase, and measures both."
                               : "Takes a recording to phase in rad, by the transport-of-intensity equation.",
         .examples = with_model ? run_examples : reconstruct_examples,
-        .synopsis = with_model ? "--rig FILE RECORDING... --model FILE -o FILE.h5 [options]"
-                               : "--rig FILE RECORDING... -o FILE.h5 [options]",
+        .synopsis = with_model ? "--rig FILE RECORDING --model FILE -o FILE.h5 [options]\n"
+                                 "  ptie run --rig FILE --plus FILE --minus FILE -m FILE -o FILE.h5 [options]"
+                               : "--rig FILE RECORDING -o FILE.h5 [options]\n"
+                                 "  ptie reconstruct --rig FILE --plus FILE --minus FILE -o FILE.h5 [options]",
         .notes = notes,
-        .least = 1,
-        .most = 3,
-        .operand = "RECORDING",
+        .most = 1,
         .options = options + (with_model ? 0 : 1),
         .count = COUNT(options) - (with_model ? 0 : 1)};
     operand_list files;
     int code = parse_options(&usage, argc, argv, &files);
     if (code != GO_ON) return code;
-    assign_planes(p, &files);
+    if (files.count && p->plus)
+        return misused("%s: expected RECORDING or --plus, not both (found '%s')", name, files.value[0]);
+    if (files.count) p->plus = files.value[0];
     return check(s, name, with_model);
 }
 
