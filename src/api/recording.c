@@ -36,10 +36,12 @@ ptie_status ptie_recording_read(ptie_recording *recording, int64_t frame, float 
 /* A name is a word of files and paths: letters, digits, '_' and '-'. */
 static ptie_status check_name(const char *name, const char *where) {
     PTIE_TRY(ptie_check_pointer(name, where, "name"));
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    static const char letters[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
     size_t length = strlen(name);
     if (length >= 1 && length <= LONGEST_NAME && strspn(name, letters) == length) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EINVAL, "%s: name (expected 1 to %d letters, digits, '_' or '-', found '%s')", where,
+    return PTIE_FAIL(PTIE_EINVAL,
+                     "%s: name (expected 1 to %d letters, digits, '_' or '-', found '%s')", where,
                      LONGEST_NAME, name);
 }
 
@@ -51,8 +53,8 @@ static ptie_status check_info(const ptie_recording_info *info, const char *where
     PTIE_TRY(ptie_check_number(info->frame_rate_hz, 0, 1e15, where, "frame_rate_hz"));
     PTIE_TRY(ptie_check_number(info->pixel_m, 0, 1, where, "pixel_m"));
     if (!memchr(info->unit, 0, sizeof info->unit))
-        return PTIE_FAIL(PTIE_EINVAL, "%s: unit is not terminated (expected at most %zu bytes)", where,
-                         sizeof info->unit - 1);
+        return PTIE_FAIL(PTIE_EINVAL, "%s: unit is not terminated (expected at most %zu bytes)",
+                         where, sizeof info->unit - 1);
     return PTIE_OK;
 }
 

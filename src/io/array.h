@@ -7,7 +7,8 @@
 
 #include "base/memory.h"
 
-/* Makes room for one more item: *(type **)items has `count` items of `size` bytes and room for *capacity. */
+/* Makes room for one more item: *(type **)items has `count` items of `size` bytes and room for
+ * *capacity. */
 static inline ptie_status ptie_array_room(void *items, size_t count, size_t *capacity, size_t size,
                                           const char *what) {
     if (count < *capacity) return PTIE_OK;

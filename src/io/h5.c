@@ -57,7 +57,8 @@ static herr_t take_reason(unsigned depth, const H5E_error2_t *entry, void *data)
 }
 
 /* Must come right after the call that failed: the next one clears the stack. */
-static ptie_status h5_failure(const ptie_h5 *h5, ptie_status status, const char *what, const char *object) {
+static ptie_status h5_failure(const ptie_h5 *h5, ptie_status status, const char *what,
+                              const char *object) {
     char reason[REASON_BYTES] = "no reason given";
     if (h5->failure)
         snprintf(reason, sizeof reason, "%s", strerror(h5->failure));
@@ -93,7 +94,8 @@ static hid_t stored_type(ptie_h5_type type) {
     return H5I_INVALID_HID;
 }
 
-/* --- files --------------------------------------------------------------------------------------- */
+/* --- files ---------------------------------------------------------------------------------------
+ */
 
 static void h5_free(ptie_h5 *h5) {
     ptie_free(h5->path);
@@ -151,7 +153,8 @@ ptie_status ptie_h5_open(ptie_h5 **out, const char *path) {
     ptie_h5 *h5;
     unsigned char head[1];
     *out = NULL;
-    PTIE_TRY(ptie_input_head(path, head, sizeof head, NULL)); /* the system's reason for a missing file */
+    PTIE_TRY(ptie_input_head(path, head, sizeof head,
+                             NULL)); /* the system's reason for a missing file */
     PTIE_TRY(h5_new(&h5, path));
     ptie_status status = open_file(h5);
     if (status != PTIE_OK) {
@@ -185,7 +188,8 @@ void ptie_h5_discard(ptie_h5 *h5) {
     h5_free(h5);
 }
 
-/* --- data sets ----------------------------------------------------------------------------------- */
+/* --- data sets -----------------------------------------------------------------------------------
+ */
 
 ptie_status ptie_h5_dataset(ptie_h5 *h5, const char *path, ptie_h5_type type, int32_t rank,
                             const uint64_t *dims, uint64_t chunk_rows) {
@@ -201,7 +205,8 @@ ptie_status ptie_h5_dataset(ptie_h5 *h5, const char *path, ptie_h5_type type, in
     H5Pset_create_intermediate_group(links, 1);
     H5Pset_obj_track_times(creation, false);
     if (chunk_rows > 0) H5Pset_chunk(creation, rank, chunk);
-    SCOPED_ID set = H5Dcreate2(h5->file, path, stored_type(type), space, links, creation, H5P_DEFAULT);
+    SCOPED_ID set =
+        H5Dcreate2(h5->file, path, stored_type(type), space, links, creation, H5P_DEFAULT);
     return written(h5, set >= 0, "create", path);
 }
 
@@ -216,8 +221,8 @@ static ptie_status set_shape(const ptie_h5 *h5, const char *path, hid_t set, int
     SCOPED_ID space = H5Dget_space(set);
     *rank = H5Sget_simple_extent_ndims(space);
     if (*rank < 1 || *rank > 4)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: %s has %d dimensions (expected 1 to 4)", h5->path, path,
-                         *rank);
+        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: %s has %d dimensions (expected 1 to 4)", h5->path,
+                         path, *rank);
     H5Sget_simple_extent_dims(space, dims, NULL);
     return PTIE_OK;
 }
@@ -275,8 +280,9 @@ static ptie_status select_rows(const ptie_h5 *h5, const char *path, hid_t set, r
     hsize_t count[4], start[4] = {which.first};
     PTIE_TRY(set_shape(h5, path, set, &rank, count));
     if (which.first > count[0] || which.count > count[0] - which.first)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: %s has too few rows (expected %llu, found %llu)", h5->path, path,
-                         (unsigned long long)(which.first + which.count), (unsigned long long)count[0]);
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: %s has too few rows (expected %llu, found %llu)",
+                         h5->path, path, (unsigned long long)(which.first + which.count),
+                         (unsigned long long)count[0]);
     count[0] = which.count;
     *file_space = H5Dget_space(set);
     *memory_space = H5Screate_simple(rank, count, NULL);
@@ -318,7 +324,8 @@ ptie_status ptie_h5_read(ptie_h5 *h5, const char *path, ptie_h5_type type, uint6
     return PTIE_OK;
 }
 
-/* --- attributes ---------------------------------------------------------------------------------- */
+/* --- attributes ----------------------------------------------------------------------------------
+ */
 
 /* Opens the object, made as a group if it is not there. */
 static ptie_status open_object(ptie_h5 *h5, const char *object, hid_t *id) {
@@ -371,8 +378,8 @@ ptie_status ptie_h5_set_number(ptie_h5 *h5, const char *object, const char *name
     return write_attribute(h5, object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, space, &value);
 }
 
-ptie_status ptie_h5_set_numbers(ptie_h5 *h5, const char *object, const char *name, const double *values,
-                                size_t count) {
+ptie_status ptie_h5_set_numbers(ptie_h5 *h5, const char *object, const char *name,
+                                const double *values, size_t count) {
     LOCK_HDF5;
     SCOPED_ID space = H5Screate_simple(1, (hsize_t[]){count}, NULL);
     return write_attribute(h5, object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, space, values);
@@ -385,8 +392,8 @@ ptie_status ptie_h5_set_integer(ptie_h5 *h5, const char *object, const char *nam
 }
 
 /* Opens an attribute that holds one value. */
-static ptie_status open_single(const ptie_h5 *h5, const char *object, const char *name, hid_t *attribute,
-                               hid_t *type) {
+static ptie_status open_single(const ptie_h5 *h5, const char *object, const char *name,
+                               hid_t *attribute, hid_t *type) {
     *attribute = H5Aopen_by_name(h5->file, object, name, H5P_DEFAULT, H5P_DEFAULT);
     if (*attribute < 0)
         return PTIE_FAIL(PTIE_EFORMAT, "%s: %s has no attribute '%s'", h5->path, object, name);
@@ -394,7 +401,8 @@ static ptie_status open_single(const ptie_h5 *h5, const char *object, const char
     SCOPED_ID space = H5Aget_space(*attribute);
     hssize_t found = H5Sget_simple_extent_npoints(space);
     if (found != 1)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: attribute '%s' of %s is a list (expected one value, found %lld)",
+        return PTIE_FAIL(PTIE_EFORMAT,
+                         "%s: attribute '%s' of %s is a list (expected one value, found %lld)",
                          h5->path, name, object, (long long)found);
     return PTIE_OK;
 }
@@ -406,9 +414,11 @@ static ptie_status read_single(ptie_h5 *h5, const char *object, const char *name
     PTIE_TRY(open_single(h5, object, name, &attribute, &type));
     H5T_class_t kind = H5Tget_class(type);
     if (kind != H5T_INTEGER && kind != H5T_FLOAT)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: attribute '%s' of %s is not a number", h5->path, name, object);
-    return H5Aread(attribute, memory, value) >= 0 ? PTIE_OK
-                                                  : h5_failure(h5, PTIE_EFORMAT, "read attribute", name);
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: attribute '%s' of %s is not a number", h5->path, name,
+                         object);
+    return H5Aread(attribute, memory, value) >= 0
+               ? PTIE_OK
+               : h5_failure(h5, PTIE_EFORMAT, "read attribute", name);
 }
 
 ptie_status ptie_h5_get_number(ptie_h5 *h5, const char *object, const char *name, double *value) {
@@ -420,10 +430,11 @@ ptie_status ptie_h5_get_integer(ptie_h5 *h5, const char *object, const char *nam
 }
 
 /* A string that HDF5 allocates (the kind h5py writes). */
-static ptie_status read_variable_text(const ptie_h5 *h5, const char *name, hid_t attribute, hid_t type,
-                                      char **value) {
+static ptie_status read_variable_text(const ptie_h5 *h5, const char *name, hid_t attribute,
+                                      hid_t type, char **value) {
     char *text = NULL;
-    if (H5Aread(attribute, type, &text) < 0) return h5_failure(h5, PTIE_EFORMAT, "read attribute", name);
+    if (H5Aread(attribute, type, &text) < 0)
+        return h5_failure(h5, PTIE_EFORMAT, "read attribute", name);
     *value = ptie_strdup(text ? text : "");
     H5free_memory(text);
     return *value ? PTIE_OK : PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", h5->path);
@@ -450,7 +461,8 @@ ptie_status ptie_h5_get_text(ptie_h5 *h5, const char *object, const char *name, 
     SCOPED_ID attribute = H5I_INVALID_HID, type = H5I_INVALID_HID;
     PTIE_TRY(open_single(h5, object, name, &attribute, &type));
     if (H5Tget_class(type) != H5T_STRING)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: attribute '%s' of %s is not text", h5->path, name, object);
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: attribute '%s' of %s is not text", h5->path, name,
+                         object);
     return H5Tis_variable_str(type) > 0 ? read_variable_text(h5, name, attribute, type, value)
                                         : read_fixed_text(h5, name, attribute, type, value);
 }

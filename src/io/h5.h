@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* HDF5 files with numeric data sets [N, ...] and attributes: what data sets and results are kept in.
- * One lock serialises all HDF5 calls of the process (the library itself is not parallel), so any thread
- * may call; one ptie_h5 is used by one thread at a time.
+/* HDF5 files with numeric data sets [N, ...] and attributes: what data sets and results are kept
+ * in. One lock serialises all HDF5 calls of the process (the library itself is not parallel), so
+ * any thread may call; one ptie_h5 is used by one thread at a time.
  */
 #ifndef PTIE_IO_H5_H
 #define PTIE_IO_H5_H
@@ -11,10 +11,16 @@
 
 typedef struct ptie_h5 ptie_h5;
 
-typedef enum ptie_h5_type { PTIE_H5_F32, PTIE_H5_F64, PTIE_H5_U8, PTIE_H5_U32, PTIE_H5_U64 } ptie_h5_type;
+typedef enum ptie_h5_type {
+    PTIE_H5_F32,
+    PTIE_H5_F64,
+    PTIE_H5_U8,
+    PTIE_H5_U32,
+    PTIE_H5_U64
+} ptie_h5_type;
 
-/* Creates "<path>.part"; ptie_h5_close renames it to `path`.  Bytes depend only on what is written (no
-   time stamps). */
+/* Creates "<path>.part"; ptie_h5_close renames it to `path`.  Bytes depend only on what is written
+   (no time stamps). */
 ptie_status ptie_h5_create(ptie_h5 **out, const char *path, bool overwrite);
 ptie_status ptie_h5_open(ptie_h5 **out, const char *path); /* read-only */
 /* Completes a created file, or closes an opened one; frees in any case.  NULL is fine. */
@@ -22,19 +28,21 @@ ptie_status ptie_h5_close(ptie_h5 *h5);
 /* Frees; a created file disappears.  NULL is fine. */
 void ptie_h5_discard(ptie_h5 *h5);
 
-/* Creates a data set of the given shape, its parent groups included.  dims[0] == 0: unlimited, grows with
-   ptie_h5_write.  chunk_rows: rows (along dims[0]) per chunk; 0 = contiguous storage. */
+/* Creates a data set of the given shape, its parent groups included.  dims[0] == 0: unlimited,
+   grows with ptie_h5_write.  chunk_rows: rows (along dims[0]) per chunk; 0 = contiguous storage. */
 ptie_status ptie_h5_dataset(ptie_h5 *h5, const char *path, ptie_h5_type type, int32_t rank,
                             const uint64_t *dims, uint64_t chunk_rows);
 /* Shape of a data set; rank 1..4. */
 ptie_status ptie_h5_shape(ptie_h5 *h5, const char *path, int32_t *rank, uint64_t dims[4]);
 bool ptie_h5_exists(ptie_h5 *h5, const char *path);
-/* How the samples are stored: "u16", "f32", ...  PTIE_EUNSUPPORTED for text, compounds and the like. */
+/* How the samples are stored: "u16", "f32", ...  PTIE_EUNSUPPORTED for text, compounds and the
+ * like. */
 ptie_status ptie_h5_sample(ptie_h5 *h5, const char *path, char name[16]);
 /* Appends the paths of all data sets, one to a line, in order of their names. */
 ptie_status ptie_h5_list(ptie_h5 *h5, ptie_text *lines);
 
-/* Rows first .. first+count-1 along the first dimension.  `type` is that of the memory; HDF5 converts. */
+/* Rows first .. first+count-1 along the first dimension.  `type` is that of the memory; HDF5
+ * converts. */
 ptie_status ptie_h5_write(ptie_h5 *h5, const char *path, ptie_h5_type type, uint64_t first,
                           uint64_t count, const void *data);
 ptie_status ptie_h5_read(ptie_h5 *h5, const char *path, ptie_h5_type type, uint64_t first,
@@ -45,8 +53,8 @@ ptie_status ptie_h5_set_text(ptie_h5 *h5, const char *object, const char *name, 
 ptie_status ptie_h5_set_texts(ptie_h5 *h5, const char *object, const char *name,
                               const char *const *values, size_t count); /* a list of strings */
 ptie_status ptie_h5_set_number(ptie_h5 *h5, const char *object, const char *name, double value);
-ptie_status ptie_h5_set_numbers(ptie_h5 *h5, const char *object, const char *name, const double *values,
-                                size_t count); /* a list of numbers */
+ptie_status ptie_h5_set_numbers(ptie_h5 *h5, const char *object, const char *name,
+                                const double *values, size_t count); /* a list of numbers */
 ptie_status ptie_h5_set_integer(ptie_h5 *h5, const char *object, const char *name, int64_t value);
 /* *value is NUL-terminated, freed with ptie_free.  PTIE_EFORMAT when absent or of another kind. */
 ptie_status ptie_h5_get_text(ptie_h5 *h5, const char *object, const char *name, char **value);

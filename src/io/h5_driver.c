@@ -86,8 +86,8 @@ static haddr_t driver_get_eof(const H5FD_t *base, H5FD_mem_t type) {
 }
 
 /* What lies behind the end of the file reads as zero. */
-static herr_t driver_read(H5FD_t *base, H5FD_mem_t type, hid_t transfer, haddr_t address, size_t size,
-                          void *buffer) {
+static herr_t driver_read(H5FD_t *base, H5FD_mem_t type, hid_t transfer, haddr_t address,
+                          size_t size, void *buffer) {
     (void)type, (void)transfer;
     unsigned char *next = buffer;
     while (size > 0) {
@@ -103,8 +103,8 @@ static herr_t driver_read(H5FD_t *base, H5FD_mem_t type, hid_t transfer, haddr_t
     return 0;
 }
 
-static herr_t driver_write(H5FD_t *base, H5FD_mem_t type, hid_t transfer, haddr_t address, size_t size,
-                           const void *buffer) {
+static herr_t driver_write(H5FD_t *base, H5FD_mem_t type, hid_t transfer, haddr_t address,
+                           size_t size, const void *buffer) {
     (void)type, (void)transfer;
     driver_file *file = of(base);
     const unsigned char *next = buffer;
@@ -127,7 +127,8 @@ static herr_t driver_truncate(H5FD_t *base, hid_t transfer, hbool_t closing) {
     (void)transfer, (void)closing;
     driver_file *file = of(base);
     if (file->end == file->allocated) return 0;
-    if (*file->failure == 0 && ftruncate(file->descriptor, (off_t)file->allocated) != 0) remember(file);
+    if (*file->failure == 0 && ftruncate(file->descriptor, (off_t)file->allocated) != 0)
+        remember(file);
     file->end = file->allocated;
     return 0;
 }

@@ -22,7 +22,8 @@ ptie_status ptie_input_open(FILE **out, const char *path, uint64_t *bytes) {
     return PTIE_OK;
 }
 
-ptie_status ptie_input_head(const char *path, unsigned char *head, size_t capacity, uint64_t *bytes) {
+ptie_status ptie_input_head(const char *path, unsigned char *head, size_t capacity,
+                            uint64_t *bytes) {
     FILE *stream;
     PTIE_TRY(ptie_input_open(&stream, path, bytes));
     memset(head, 0, capacity);

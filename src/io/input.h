@@ -7,10 +7,12 @@
 
 #include "base/status.h"
 
-/* Opens a regular file for reading; *bytes (may be NULL) is its size.  PTIE_EIO, also for a directory. */
+/* Opens a regular file for reading; *bytes (may be NULL) is its size.  PTIE_EIO, also for a
+ * directory. */
 ptie_status ptie_input_open(FILE **out, const char *path, uint64_t *bytes);
 
 /* The first `capacity` bytes of a file, the rest of `head` zeroed when it is shorter. */
-ptie_status ptie_input_head(const char *path, unsigned char *head, size_t capacity, uint64_t *bytes);
+ptie_status ptie_input_head(const char *path, unsigned char *head, size_t capacity,
+                            uint64_t *bytes);
 
 #endif

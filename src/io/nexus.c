@@ -13,8 +13,8 @@ static ptie_status write_groups(ptie_h5 *h5, const ptie_nexus_signal *signals, s
     static const char *const axes[] = {"time", "y", "x"};
     const char *others[LARGEST_SIGNALS];
     if (count > LARGEST_SIGNALS)
-        return PTIE_FAIL(PTIE_EINVAL, "too many signals (expected at most %d, found %zu)", LARGEST_SIGNALS,
-                         count);
+        return PTIE_FAIL(PTIE_EINVAL, "too many signals (expected at most %d, found %zu)",
+                         LARGEST_SIGNALS, count);
     for (size_t i = 1; i < count; i++) others[i - 1] = signals[i].name;
     PTIE_TRY(ptie_h5_set_text(h5, "/", "default", "entry"));
     PTIE_TRY(ptie_h5_set_text(h5, ENTRY, "NX_class", "NXentry"));
@@ -27,7 +27,8 @@ static ptie_status write_groups(ptie_h5 *h5, const ptie_nexus_signal *signals, s
 }
 
 /* count values first, first + step, ... of an axis that exists already. */
-static ptie_status write_ramp(ptie_h5 *h5, const char *path, uint64_t count, double first, double step) {
+static ptie_status write_ramp(ptie_h5 *h5, const char *path, uint64_t count, double first,
+                              double step) {
     double *values;
     PTIE_TRY(ptie_alloc_status(&values, (size_t)count, sizeof *values, path));
     for (uint64_t i = 0; i < count; i++) values[i] = first + step * (double)i;
@@ -55,21 +56,24 @@ static ptie_status make_time(ptie_h5 *h5, const ptie_nexus_axes *axes) {
     return axes->frames ? write_time(h5, axes) : PTIE_OK;
 }
 
-static ptie_status make_signal(ptie_h5 *h5, const ptie_nexus_axes *axes, const ptie_nexus_signal *signal) {
+static ptie_status make_signal(ptie_h5 *h5, const ptie_nexus_axes *axes,
+                               const ptie_nexus_signal *signal) {
     char path[256];
     const uint64_t dims[3] = {axes->frames, (uint64_t)axes->height_px, (uint64_t)axes->width_px};
     const double pixel_um = 1e6 * axes->pixel_m;
     snprintf(path, sizeof path, PTIE_NEXUS_DATA "/%s", signal->name);
     PTIE_TRY(ptie_h5_dataset(h5, path, PTIE_H5_F32, 3, dims, 1));
     PTIE_TRY(ptie_h5_set_text(h5, path, "units", signal->unit));
-    PTIE_TRY(ptie_h5_set_text(h5, path, "long_name", signal->long_name ? signal->long_name : signal->name));
+    PTIE_TRY(ptie_h5_set_text(h5, path, "long_name",
+                              signal->long_name ? signal->long_name : signal->name));
     if (axes->pixel_m > 0) /* for Fiji: z y x */
-        PTIE_TRY(ptie_h5_set_numbers(h5, path, "element_size_um", (double[]){1, pixel_um, pixel_um}, 3));
+        PTIE_TRY(
+            ptie_h5_set_numbers(h5, path, "element_size_um", (double[]){1, pixel_um, pixel_um}, 3));
     return ptie_h5_set_text(h5, path, "interpretation", "image");
 }
 
-ptie_status ptie_nexus_begin(ptie_h5 *h5, const ptie_nexus_axes *axes, const ptie_nexus_signal *signals,
-                             size_t count) {
+ptie_status ptie_nexus_begin(ptie_h5 *h5, const ptie_nexus_axes *axes,
+                             const ptie_nexus_signal *signals, size_t count) {
     PTIE_TRY(write_groups(h5, signals, count));
     for (size_t i = 0; i < count; i++) PTIE_TRY(make_signal(h5, axes, &signals[i]));
     PTIE_TRY(make_time(h5, axes));

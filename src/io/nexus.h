@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Maps over time as NeXus lays them out in HDF5 (NXdata): silx, h5web and NeXpy plot them without a click.
+/* Maps over time as NeXus lays them out in HDF5 (NXdata): silx, h5web and NeXpy plot them without a
+ * click.
  *
  *   /            @default = "entry"
  *   /entry       @NX_class = "NXentry" @default = "data"
@@ -16,11 +17,11 @@
 #define PTIE_NEXUS_DATA "/entry/data"
 
 typedef struct ptie_nexus_axes {
-    uint64_t frames;                /* 0: not known yet, grows */
+    uint64_t frames; /* 0: not known yet, grows */
     int32_t width_px, height_px;
     int64_t first_frame, frame_step; /* of the recording they come from; step 0 means 1 */
-    double frame_rate_hz;           /* > 0: time in s, else the frame's number */
-    double pixel_m;                 /* > 0: y and x in m, else in px */
+    double frame_rate_hz;            /* > 0: time in s, else the frame's number */
+    double pixel_m;                  /* > 0: y and x in m, else in px */
 } ptie_nexus_axes;
 
 typedef struct ptie_nexus_signal {
@@ -28,10 +29,10 @@ typedef struct ptie_nexus_signal {
     const char *unit;             /* "rad"; "" for none */
 } ptie_nexus_signal;
 
-/* Makes the groups, the axes and `count` >= 1 empty signals, one frame to a chunk.  Frames are then written
-   with ptie_h5_write(h5, PTIE_NEXUS_DATA "/NAME", PTIE_H5_F32, t, n, ...). */
-ptie_status ptie_nexus_begin(ptie_h5 *h5, const ptie_nexus_axes *axes, const ptie_nexus_signal *signals,
-                             size_t count);
+/* Makes the groups, the axes and `count` >= 1 empty signals, one frame to a chunk.  Frames are then
+   written with ptie_h5_write(h5, PTIE_NEXUS_DATA "/NAME", PTIE_H5_F32, t, n, ...). */
+ptie_status ptie_nexus_begin(ptie_h5 *h5, const ptie_nexus_axes *axes,
+                             const ptie_nexus_signal *signals, size_t count);
 /* Completes the time axis when axes->frames, now known, was 0 at the beginning. */
 ptie_status ptie_nexus_end(ptie_h5 *h5, const ptie_nexus_axes *axes);
 

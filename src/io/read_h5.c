@@ -90,8 +90,8 @@ static ptie_status find_only(ptie_h5 *h5, const char *file, char path[PATH_BYTES
         else if (count == 0)
             status = PTIE_FAIL(PTIE_EFORMAT, "%s: no numeric data set of 2 or 3 dimensions", file);
         else
-            status = PTIE_FAIL(PTIE_EFORMAT, "%s: several data sets (expected %s:PATH, found %s)", file, file,
-                               kept.data);
+            status = PTIE_FAIL(PTIE_EFORMAT, "%s: several data sets (expected %s:PATH, found %s)",
+                               file, file, kept.data);
     }
     ptie_text_free(&lines);
     ptie_text_free(&kept);
@@ -100,8 +100,9 @@ static ptie_status find_only(ptie_h5 *h5, const char *file, char path[PATH_BYTES
 
 static ptie_status find_data_set(h5_recording *recording, const char *file, const char *inside) {
     if (strlen(inside) >= PATH_BYTES)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: path of the data set too long (expected at most %zu bytes)",
-                         file, PATH_BYTES - 1);
+        return PTIE_FAIL(PTIE_EUNSUPPORTED,
+                         "%s: path of the data set too long (expected at most %zu bytes)", file,
+                         PATH_BYTES - 1);
     if (*inside)
         memcpy(recording->dataset, inside, strlen(inside));
     else if (!find_default(recording->h5, recording->dataset))
@@ -109,7 +110,8 @@ static ptie_status find_data_set(h5_recording *recording, const char *file, cons
     return PTIE_OK;
 }
 
-static ptie_status take_shape(h5_recording *recording, ptie_recording_info *info, const char *file) {
+static ptie_status take_shape(h5_recording *recording, ptie_recording_info *info,
+                              const char *file) {
     uint64_t dims[4];
     PTIE_TRY(ptie_h5_shape(recording->h5, recording->dataset, &recording->rank, dims));
     const int32_t rank = recording->rank;
@@ -168,7 +170,8 @@ static ptie_status h5_load(h5_recording *recording, ptie_recording_info *info, c
     return PTIE_OK;
 }
 
-static ptie_status h5_open(void **state, ptie_recording_info *info, const char *path, const char *inside) {
+static ptie_status h5_open(void **state, ptie_recording_info *info, const char *path,
+                           const char *inside) {
     h5_recording *recording;
     PTIE_TRY(ptie_alloc_status(&recording, 1, sizeof *recording, path));
     ptie_status status = h5_load(recording, info, path, inside);

@@ -49,12 +49,13 @@ static ptie_status parse_type(npy *file, const char *header) {
     const char *text = value_of(header, "descr");
     if (!text) return PTIE_FAIL(PTIE_EFORMAT, "%s: NPY header without 'descr'", file->path);
     /* A quote, byte order, kind, size, and the quote again: '<f4' */
-    bool simple = strlen(text) > 4 && strchr("'\"", text[0]) && strchr("<>|", text[1]) && text[4] == text[0];
+    bool simple =
+        strlen(text) > 4 && strchr("'\"", text[0]) && strchr("<>|", text[1]) && text[4] == text[0];
     if (simple) file->sample = (ptie_sample){text[2], (size_t)(text[3] - '0')};
     if (!ptie_sample_known(file->sample))
         return PTIE_FAIL(PTIE_EUNSUPPORTED,
-                         "%s: sample type not read (expected integers or f4, f8, found %.*s)", file->path,
-                         (int)strcspn(text, ","), text);
+                         "%s: sample type not read (expected integers or f4, f8, found %.*s)",
+                         file->path, (int)strcspn(text, ","), text);
     file->swapped = file->sample.bytes > 1 && (text[1] == '<') != ptie_machine_is_little();
     return PTIE_OK;
 }
@@ -78,19 +79,23 @@ static ptie_status parse_header(npy *file, ptie_recording_info *info, const char
     uint64_t shape[4] = {0};
     PTIE_TRY(parse_type(file, header));
     const char *order = value_of(header, "fortran_order");
-    if (!order) return PTIE_FAIL(PTIE_EFORMAT, "%s: NPY header without 'fortran_order'", file->path);
+    if (!order)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: NPY header without 'fortran_order'", file->path);
     if (strncmp(order, "False", 5) != 0)
         return PTIE_FAIL(PTIE_EUNSUPPORTED,
-                         "%s: array in Fortran order (save it with numpy.ascontiguousarray)", file->path);
+                         "%s: array in Fortran order (save it with numpy.ascontiguousarray)",
+                         file->path);
     int rank = parse_shape(value_of(header, "shape"), shape);
-    if (rank < 0) return PTIE_FAIL(PTIE_EFORMAT, "%s: NPY header without a valid 'shape'", file->path);
+    if (rank < 0)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: NPY header without a valid 'shape'", file->path);
     if (rank != 2 && rank != 3)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: array has %d dimensions (expected 2 or 3)", file->path, rank);
+        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: array has %d dimensions (expected 2 or 3)",
+                         file->path, rank);
     PTIE_TRY(ptie_info_set_size(info, file->path, shape[rank - 1], shape[rank - 2]));
     uint64_t frames = rank == 3 ? shape[0] : 1;
     if (frames < 1 || frames > INT64_MAX)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: array has no valid number of frames (found %llu)", file->path,
-                         (unsigned long long)frames);
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: array has no valid number of frames (found %llu)",
+                         file->path, (unsigned long long)frames);
     info->frames = (int64_t)frames;
     ptie_sample_name(info->sample, file->sample);
     file->frame_samples = (size_t)info->width_px * (size_t)info->height_px;
@@ -109,7 +114,8 @@ static ptie_status read_header(npy *file, char **header) {
                          file->path, lead[6]);
     uint64_t bytes = ptie_get_le(lead + 8, lead_bytes - 8);
     if (bytes > HEADER_LIMIT)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: NPY header too long (expected at most %d bytes, found %llu)",
+        return PTIE_FAIL(PTIE_EFORMAT,
+                         "%s: NPY header too long (expected at most %d bytes, found %llu)",
                          file->path, HEADER_LIMIT, (unsigned long long)bytes);
     PTIE_TRY(ptie_alloc_status(header, (size_t)bytes + 1, 1, file->path));
     if (fread(*header, 1, (size_t)bytes, file->stream) != (size_t)bytes)
@@ -131,8 +137,10 @@ static ptie_status npy_load(npy *file, ptie_recording_info *info, const char *pa
     uint64_t frame_bytes = file->frame_samples * file->sample.bytes; /* below 2^33 */
     uint64_t frames_there = (file_bytes - file->start) / frame_bytes;
     if ((uint64_t)info->frames > frames_there)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: file is cut short (expected %lld frames of %llu bytes, found "
-                         "%llu)", path, (long long)info->frames, (unsigned long long)frame_bytes,
+        return PTIE_FAIL(PTIE_EFORMAT,
+                         "%s: file is cut short (expected %lld frames of %llu bytes, found "
+                         "%llu)",
+                         path, (long long)info->frames, (unsigned long long)frame_bytes,
                          (unsigned long long)frames_there);
     return PTIE_OK;
 }

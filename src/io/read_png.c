@@ -103,9 +103,11 @@ static ptie_status decoder_start(decoder *d, const char *path) {
 
 /* Checks the size against the file's before anything is allocated for it. */
 static ptie_status check_size(const decoder *d, ptie_recording_info *info) {
-    uint64_t width = png_get_image_width(d->png, d->info), height = png_get_image_height(d->png, d->info);
+    uint64_t width = png_get_image_width(d->png, d->info),
+             height = png_get_image_height(d->png, d->info);
     PTIE_TRY(ptie_info_set_size(info, d->path, width, height));
-    return ptie_check_fits(d->path, height * png_get_rowbytes(d->png, d->info), d->file_bytes, DENSEST);
+    return ptie_check_fits(d->path, height * png_get_rowbytes(d->png, d->info), d->file_bytes,
+                           DENSEST);
 }
 
 static ptie_status read_image(decoder *d) {
@@ -151,7 +153,8 @@ static void png_close(void *state) {
     ptie_free(image);
 }
 
-static ptie_status png_load(grey_png *image, decoder *d, ptie_recording_info *info, const char *path) {
+static ptie_status png_load(grey_png *image, decoder *d, ptie_recording_info *info,
+                            const char *path) {
     image->path = ptie_strdup(path);
     if (!image->path) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
     PTIE_TRY(decoder_start(d, path));
@@ -160,7 +163,8 @@ static ptie_status png_load(grey_png *image, decoder *d, ptie_recording_info *in
     info->frames = 1;
     image->width = info->width_px;
     image->height = info->height_px;
-    snprintf(info->sample, sizeof info->sample, png_get_bit_depth(d->png, d->info) == 16 ? "u16" : "u8");
+    snprintf(info->sample, sizeof info->sample,
+             png_get_bit_depth(d->png, d->info) == 16 ? "u16" : "u8");
     return PTIE_OK;
 }
 
@@ -190,14 +194,18 @@ static unsigned sample_at(const unsigned char *row, size_t index, bool wide) {
 /* The value of one pixel; colour and transparency are refused. */
 static ptie_status grey_of(const decoder *d, size_t x, size_t y, unsigned *value) {
     unsigned c[4] = {0};
-    for (size_t i = 0; i < d->channels; i++) c[i] = sample_at(d->rows[y], x * d->channels + i, d->wide);
+    for (size_t i = 0; i < d->channels; i++)
+        c[i] = sample_at(d->rows[y], x * d->channels + i, d->wide);
     if (d->channels >= 3 && (c[0] != c[1] || c[0] != c[2]))
-        return PTIE_FAIL(PTIE_EUNSUPPORTED,
-                         "%s: colour image (expected grey, found red %u, green %u, blue %u at x=%zu, y=%zu)",
-                         d->path, c[0], c[1], c[2], x, y);
+        return PTIE_FAIL(
+            PTIE_EUNSUPPORTED,
+            "%s: colour image (expected grey, found red %u, green %u, blue %u at x=%zu, y=%zu)",
+            d->path, c[0], c[1], c[2], x, y);
     if (d->channels % 2 == 0 && c[d->channels - 1] != (d->wide ? 65535u : 255u))
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: transparent image (expected opaque, found alpha %u at x=%zu, "
-                         "y=%zu)", d->path, c[d->channels - 1], x, y);
+        return PTIE_FAIL(PTIE_EUNSUPPORTED,
+                         "%s: transparent image (expected opaque, found alpha %u at x=%zu, "
+                         "y=%zu)",
+                         d->path, c[d->channels - 1], x, y);
     *value = c[0];
     return PTIE_OK;
 }
@@ -220,7 +228,8 @@ static ptie_status png_read(void *state, int64_t frame, float *data) {
     if (status == PTIE_OK) status = read_image(&d);
     if (status == PTIE_OK && (png_get_image_width(d.png, d.info) != (png_uint_32)image->width ||
                               png_get_image_height(d.png, d.info) != (png_uint_32)image->height))
-        status = PTIE_FAIL(PTIE_EFORMAT, "%s: the file changed while it was being read", image->path);
+        status =
+            PTIE_FAIL(PTIE_EFORMAT, "%s: the file changed while it was being read", image->path);
     if (status == PTIE_OK) status = take_values(&d, image, data);
     decoder_stop(&d);
     return status;

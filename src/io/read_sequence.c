@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Numbered files, one frame each: the images of a folder, or those that fit a pattern.  Opened one at a
- * time; all like the first. */
+/* Numbered files, one frame each: the images of a folder, or those that fit a pattern.  Opened one
+ * at a time; all like the first. */
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
@@ -84,7 +84,8 @@ static void sequence_close(void *state) {
 }
 
 static ptie_status add_path(sequence *files, const char *path) {
-    PTIE_TRY(ptie_array_room(&files->paths, files->count, &files->capacity, sizeof *files->paths, path));
+    PTIE_TRY(
+        ptie_array_room(&files->paths, files->count, &files->capacity, sizeof *files->paths, path));
     files->paths[files->count] = ptie_strdup(path);
     if (!files->paths[files->count]) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
     files->count++;
@@ -96,13 +97,15 @@ static ptie_status add_files(sequence *files, const char *folder, const char *le
                              const ptie_pattern *pattern) {
     char path[4096];
     DIR *entries = opendir(folder);
-    if (!entries) return PTIE_FAIL(PTIE_EIO, "%s: cannot read the folder: %s", folder, strerror(errno));
+    if (!entries)
+        return PTIE_FAIL(PTIE_EIO, "%s: cannot read the folder: %s", folder, strerror(errno));
     ptie_status status = PTIE_OK;
     for (struct dirent *entry; status == PTIE_OK && (entry = readdir(entries));) {
         if (entry->d_name[0] == '.' && !pattern) continue;
         int length = snprintf(path, sizeof path, "%s%s", lead, entry->d_name);
         if (length < 0 || (size_t)length >= sizeof path) continue;
-        if (pattern ? ptie_pattern_number(pattern, path) >= 0 : is_image(path)) status = add_path(files, path);
+        if (pattern ? ptie_pattern_number(pattern, path) >= 0 : is_image(path))
+            status = add_path(files, path);
     }
     closedir(entries);
     if (files->count > 0) qsort(files->paths, files->count, sizeof *files->paths, by_number);
@@ -117,7 +120,8 @@ static ptie_status add_folder(sequence *files, const char *path) {
     for (size_t i = 1; i < files->count; i++)
         if (!same_but_numbers(files->paths[0], files->paths[i]))
             return PTIE_FAIL(PTIE_EFORMAT,
-                             "%s: images of several kinds, such as %s and %s (give a pattern like flow_%%02d.png)",
+                             "%s: images of several kinds, such as %s and %s (give a pattern like "
+                             "flow_%%02d.png)",
                              path, files->paths[0] + strlen(lead), files->paths[i] + strlen(lead));
     return PTIE_OK;
 }
@@ -125,7 +129,8 @@ static ptie_status add_folder(sequence *files, const char *path) {
 static ptie_status add_pattern(sequence *files, const ptie_pattern *pattern) {
     char lead[4096]; /* up to the last slash */
     const char *slash = strrchr(pattern->text, '/');
-    snprintf(lead, sizeof lead, "%.*s", slash ? (int)(slash - pattern->text) + 1 : 0, pattern->text);
+    snprintf(lead, sizeof lead, "%.*s", slash ? (int)(slash - pattern->text) + 1 : 0,
+             pattern->text);
     return add_files(files, *lead ? lead : ".", lead, pattern);
 }
 
@@ -137,14 +142,16 @@ static ptie_status open_file(const sequence *files, size_t i, ptie_recording **o
     const ptie_recording_info *found = ptie_io_info(file), *expected = &files->frame;
     ptie_status status = PTIE_OK;
     if (found->frames != 1)
-        status = PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: part of a sequence (expected 1 frame, found %lld)",
-                           files->paths[i], (long long)found->frames);
-    else if (expected->frames && (found->width_px != expected->width_px ||
-                                  found->height_px != expected->height_px ||
-                                  strcmp(found->sample, expected->sample) != 0))
-        status = PTIE_FAIL(PTIE_ESIZE, "%s: unlike the first frame (expected %d x %d %s, found %d x %d %s)",
-                           files->paths[i], expected->width_px, expected->height_px, expected->sample,
-                           found->width_px, found->height_px, found->sample);
+        status =
+            PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: part of a sequence (expected 1 frame, found %lld)",
+                      files->paths[i], (long long)found->frames);
+    else if (expected->frames &&
+             (found->width_px != expected->width_px || found->height_px != expected->height_px ||
+              strcmp(found->sample, expected->sample) != 0))
+        status = PTIE_FAIL(PTIE_ESIZE,
+                           "%s: unlike the first frame (expected %d x %d %s, found %d x %d %s)",
+                           files->paths[i], expected->width_px, expected->height_px,
+                           expected->sample, found->width_px, found->height_px, found->sample);
     if (status != PTIE_OK) {
         ptie_io_close(file);
         return status;
@@ -161,7 +168,8 @@ static ptie_status sequence_load(sequence *files, ptie_recording_info *info, con
     else if (ptie_pattern_find(&pattern, path))
         PTIE_TRY(add_pattern(files, &pattern));
     if (files->count == 0)
-        return PTIE_FAIL(PTIE_EIO, "%s: no frames (expected numbered images: .png .tif .tiff .npy)", path);
+        return PTIE_FAIL(PTIE_EIO, "%s: no frames (expected numbered images: .png .tif .tiff .npy)",
+                         path);
     PTIE_TRY(open_file(files, 0, &first));
     *info = files->frame = *ptie_io_info(first);
     ptie_io_close(first);

@@ -34,21 +34,24 @@ static bool tiff_probe(const unsigned char *head) {
     return false;
 }
 
-static int on_error(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments) {
+static int on_error(TIFF *tiff, void *user, const char *module, const char *format,
+                    va_list arguments) {
     (void)tiff, (void)module;
     tiff_stack *stack = user;
     if (!stack->message[0]) vsnprintf(stack->message, sizeof stack->message, format, arguments);
     return 1; /* told: the process-wide handler, which prints, is not called */
 }
 
-static int on_warning(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments) {
+static int on_warning(TIFF *tiff, void *user, const char *module, const char *format,
+                      va_list arguments) {
     (void)tiff, (void)user, (void)module, (void)format, (void)arguments;
     return 1;
 }
 
 static ptie_status damaged(tiff_stack *stack, int64_t page) {
-    ptie_status status = PTIE_FAIL(PTIE_EFORMAT, "%s: damaged TIFF (page %lld): %s", stack->path,
-                                   (long long)page, stack->message[0] ? stack->message : "no reason given");
+    ptie_status status =
+        PTIE_FAIL(PTIE_EFORMAT, "%s: damaged TIFF (page %lld): %s", stack->path, (long long)page,
+                  stack->message[0] ? stack->message : "no reason given");
     stack->message[0] = 0;
     return status;
 }
@@ -68,7 +71,8 @@ static uint16_t tag16(TIFF *tiff, uint32_t tag) {
     return value;
 }
 
-static ptie_status refuse(const tiff_stack *stack, const char *what, const char *expected, unsigned found) {
+static ptie_status refuse(const tiff_stack *stack, const char *what, const char *expected,
+                          unsigned found) {
     return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: page %lld: %s (expected %s, found %u)", stack->path,
                      (long long)stack->page_count, what, expected, found);
 }
@@ -88,8 +92,8 @@ static ptie_status page_sample(const tiff_stack *stack, ptie_sample *sample) {
                                                       : 0;
     *sample = (ptie_sample){kind, bits % 8 == 0 ? bits / 8 : 0};
     if (!ptie_sample_known(*sample))
-        return refuse(stack, kind == 'f' ? "float sample" : "sample type", kind == 'f' ? "32 or 64 bits"
-                      : "integers of 8, 16, 32 or 64 bits", bits);
+        return refuse(stack, kind == 'f' ? "float sample" : "sample type",
+                      kind == 'f' ? "32 or 64 bits" : "integers of 8, 16, 32 or 64 bits", bits);
     return PTIE_OK;
 }
 
@@ -121,11 +125,12 @@ static ptie_status check_page(tiff_stack *stack, ptie_recording_info *info) {
     }
     if (page.width_px != stack->width || page.height_px != stack->height ||
         sample.kind != stack->sample.kind || sample.bytes != stack->sample.bytes)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED,
-                         "%s: page %lld differs from page 0 (expected %d x %d %c%zu, found %d x %d %c%zu)",
-                         stack->path, (long long)stack->page_count, stack->width, stack->height,
-                         stack->sample.kind, 8 * stack->sample.bytes, page.width_px, page.height_px,
-                         sample.kind, 8 * sample.bytes);
+        return PTIE_FAIL(
+            PTIE_EUNSUPPORTED,
+            "%s: page %lld differs from page 0 (expected %d x %d %c%zu, found %d x %d %c%zu)",
+            stack->path, (long long)stack->page_count, stack->width, stack->height,
+            stack->sample.kind, 8 * stack->sample.bytes, page.width_px, page.height_px, sample.kind,
+            8 * sample.bytes);
     if (TIFFIsTiled(stack->tiff)) PTIE_TRY(check_tiles(stack));
     bool plain = tag16(stack->tiff, TIFFTAG_COMPRESSION) == COMPRESSION_NONE;
     return ptie_check_fits(stack->path, (uint64_t)width * height * sample.bytes, stack->file_bytes,
@@ -140,6 +145,23 @@ static ptie_status add_page(tiff_stack *stack) {
     return PTIE_OK;
 }
 
+/* Is the link that ends the current directory in the file?  libtiff takes a missing one for "no
+ * more". */
+static bool has_link(const tiff_stack *stack) {
+    TIFF *tiff = stack->tiff;
+    const bool big = TIFFIsBigTIFF(tiff);
+    const tmsize_t count_bytes = big ? 8 : 2;
+    const uint64_t at = TIFFCurrentDirOffset(tiff);
+    unsigned char bytes[8];
+    uint64_t entries = 0;
+    TIFFGetSeekProc(tiff)(TIFFClientdata(tiff), at, SEEK_SET);
+    if (TIFFGetReadProc(tiff)(TIFFClientdata(tiff), bytes, count_bytes) != count_bytes)
+        return false;
+    for (tmsize_t i = 0; i < count_bytes; i++)
+        entries = entries << 8 | bytes[TIFFIsBigEndian(tiff) ? i : count_bytes - 1 - i];
+    return at + (big ? 8 + 20 * entries + 8 : 2 + 12 * entries + 4) <= stack->file_bytes;
+}
+
 /* Walks the pages; previews and masks are not frames. */
 static ptie_status list_pages(tiff_stack *stack, ptie_recording_info *info) {
     for (int64_t page = 0;; page++) {
@@ -149,10 +171,14 @@ static ptie_status list_pages(tiff_stack *stack, ptie_recording_info *info) {
             PTIE_TRY(check_page(stack, info));
             PTIE_TRY(add_page(stack));
         }
+        if (!has_link(stack))
+            return PTIE_FAIL(PTIE_EFORMAT, "%s: file is cut short (page %lld)", stack->path,
+                             (long long)page);
         if (TIFFLastDirectory(stack->tiff)) break;
         if (!TIFFReadDirectory(stack->tiff)) return damaged(stack, page + 1);
     }
-    if (stack->page_count == 0) return PTIE_FAIL(PTIE_EFORMAT, "%s: TIFF without an image", stack->path);
+    if (stack->page_count == 0)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: TIFF without an image", stack->path);
     info->frames = stack->page_count;
     return PTIE_OK;
 }
@@ -184,21 +210,24 @@ static ptie_status take_description(tiff_stack *stack, ptie_recording_info *info
     char value[32];
     float per_unit = 0;
     double number;
-    if (!TIFFGetField(stack->tiff, TIFFTAG_IMAGEDESCRIPTION, &text) || strncmp(text, "ImageJ=", 7) != 0)
+    if (!TIFFGetField(stack->tiff, TIFFTAG_IMAGEDESCRIPTION, &text) ||
+        strncmp(text, "ImageJ=", 7) != 0)
         return PTIE_OK;
     int64_t images;
     if (stack->page_count == 1 && description_value(text, "images", value) &&
         ptie_parse_integer(value, 2, INT64_MAX, &images))
-        return PTIE_FAIL(PTIE_EUNSUPPORTED,
-                         "%s: ImageJ stack of %lld images behind one page (save it as BigTIFF or HDF5)",
-                         stack->path, (long long)images);
-    if (description_value(text, "unit", value) && TIFFGetField(stack->tiff, TIFFTAG_XRESOLUTION, &per_unit) &&
-        per_unit > 0)
+        return PTIE_FAIL(
+            PTIE_EUNSUPPORTED,
+            "%s: ImageJ stack of %lld images behind one page (save it as BigTIFF or HDF5)",
+            stack->path, (long long)images);
+    if (description_value(text, "unit", value) &&
+        TIFFGetField(stack->tiff, TIFFTAG_XRESOLUTION, &per_unit) && per_unit > 0)
         info->pixel_m = unit_m(value) / (double)per_unit;
-    if (description_value(text, "finterval", value) && !ptie_parse_quantity(value, PTIE_NUMBER, &number) &&
-        number > 0)
+    if (description_value(text, "finterval", value) &&
+        !ptie_parse_quantity(value, PTIE_NUMBER, &number) && number > 0)
         info->frame_rate_hz = 1 / number;
-    if (description_value(text, "vunit", value)) snprintf(info->unit, sizeof info->unit, "%.15s", value);
+    if (description_value(text, "vunit", value))
+        snprintf(info->unit, sizeof info->unit, "%.15s", value);
     return PTIE_OK;
 }
 
@@ -220,7 +249,8 @@ static ptie_status tiff_load(tiff_stack *stack, ptie_recording_info *info, const
     ptie_status status = ptie_input_open(&stream, path, &stack->file_bytes);
     if (status == PTIE_OK) {
         fclose(stream);
-        stack->tiff = TIFFOpenExt(path, "rm", options); /* m: no memory map, a shrinking file is no SIGBUS */
+        stack->tiff =
+            TIFFOpenExt(path, "rm", options); /* m: no memory map, a shrinking file is no SIGBUS */
     }
     TIFFOpenOptionsFree(options);
     PTIE_TRY(status);
@@ -260,8 +290,8 @@ static void place_tile(const tiff_stack *stack, float *data, const unsigned char
     const size_t columns = width - x < tile_width ? width - x : tile_width;
     const size_t rows = height - y < tile_height ? height - y : tile_height;
     for (size_t r = 0; r < rows; r++)
-        ptie_sample_convert(data + (y + r) * width + x, tile + r * tile_width * stack->sample.bytes, columns,
-                            stack->sample);
+        ptie_sample_convert(data + (y + r) * width + x, tile + r * tile_width * stack->sample.bytes,
+                            columns, stack->sample);
 }
 
 static ptie_status read_tiles(tiff_stack *stack, int64_t frame, float *data, unsigned char *tile) {
@@ -282,10 +312,11 @@ static ptie_status tiff_read(void *state, int64_t frame, float *data) {
     PTIE_TRY(go_to_page(stack, frame));
     bool tiled = TIFFIsTiled(stack->tiff);
     tmsize_t bytes = tiled ? TIFFTileSize(stack->tiff) : TIFFScanlineSize(stack->tiff);
-    if (bytes < stack->width * (tmsize_t)stack->sample.bytes && !tiled) return damaged(stack, frame);
+    if (bytes < stack->width * (tmsize_t)stack->sample.bytes && !tiled)
+        return damaged(stack, frame);
     PTIE_TRY(ptie_alloc_status(&buffer, (size_t)bytes, 1, stack->path));
-    ptie_status status = tiled ? read_tiles(stack, frame, data, buffer)
-                               : read_rows(stack, frame, data, buffer);
+    ptie_status status =
+        tiled ? read_tiles(stack, frame, data, buffer) : read_rows(stack, frame, data, buffer);
     ptie_free(buffer);
     return status;
 }

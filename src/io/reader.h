@@ -16,9 +16,10 @@ typedef struct ptie_reader {
     const char *name; /* "PNG" */
     /* Is it this format?  head: the file's first PTIE_HEAD_BYTES bytes, zeros behind its end. */
     bool (*probe)(const unsigned char *head);
-    /* Opens the file and fills `info` (zeroed; `format` is done already).  `inside` names a data set in the
-       file, or is "".  On failure *state is NULL. */
-    ptie_status (*open)(void **state, ptie_recording_info *info, const char *path, const char *inside);
+    /* Opens the file and fills `info` (zeroed; `format` is done already).  `inside` names a data
+       set in the file, or is "".  On failure *state is NULL. */
+    ptie_status (*open)(void **state, ptie_recording_info *info, const char *path,
+                        const char *inside);
     /* Frame 0 .. info->frames-1 as stored. */
     ptie_status (*read)(void *state, int64_t frame, float *data);
     void (*close)(void *state); /* NULL is fine */
@@ -36,8 +37,8 @@ bool ptie_is_sequence(const char *path);
 ptie_status ptie_info_set_size(ptie_recording_info *info, const char *path, uint64_t width,
                                uint64_t height);
 
-/* A frame that needs `needed` bytes cannot be in a file of `found`.  `densest`: how many bytes one byte of
-   the file can stand for (1 without compression). */
+/* A frame that needs `needed` bytes cannot be in a file of `found`.  `densest`: how many bytes one
+   byte of the file can stand for (1 without compression). */
 ptie_status ptie_check_fits(const char *path, uint64_t needed, uint64_t found, uint64_t densest);
 
 #endif

@@ -20,12 +20,14 @@ struct ptie_recording {
 ptie_status ptie_info_set_size(ptie_recording_info *info, const char *path, uint64_t width,
                                uint64_t height) {
     if (width < 1 || height < 1)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: empty frame (expected at least 1 x 1 px, found %llu x %llu)",
-                         path, (unsigned long long)width, (unsigned long long)height);
+        return PTIE_FAIL(PTIE_EFORMAT,
+                         "%s: empty frame (expected at least 1 x 1 px, found %llu x %llu)", path,
+                         (unsigned long long)width, (unsigned long long)height);
     if (width > PTIE_LONGEST_SIDE || height > PTIE_LONGEST_SIDE)
         return PTIE_FAIL(PTIE_EUNSUPPORTED,
-                         "%s: frame too large (expected at most %d px a side, found %llu x %llu)", path,
-                         PTIE_LONGEST_SIDE, (unsigned long long)width, (unsigned long long)height);
+                         "%s: frame too large (expected at most %d px a side, found %llu x %llu)",
+                         path, PTIE_LONGEST_SIDE, (unsigned long long)width,
+                         (unsigned long long)height);
     info->width_px = (int32_t)width;
     info->height_px = (int32_t)height;
     return PTIE_OK;
@@ -33,12 +35,13 @@ ptie_status ptie_info_set_size(ptie_recording_info *info, const char *path, uint
 
 ptie_status ptie_check_fits(const char *path, uint64_t needed, uint64_t found, uint64_t densest) {
     if (needed / densest <= found) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EFORMAT, "%s: file too short for its frames (expected %llu bytes, found %llu)",
-                     path, (unsigned long long)(needed / densest), (unsigned long long)found);
+    return PTIE_FAIL(PTIE_EFORMAT,
+                     "%s: file too short for its frames (expected %llu bytes, found %llu)", path,
+                     (unsigned long long)(needed / densest), (unsigned long long)found);
 }
 
-/* Splits "file.h5:/path/in/file" in place; returns the part inside the file, or "".  A colon that belongs
-   to the name of an existing file stays. */
+/* Splits "file.h5:/path/in/file" in place; returns the part inside the file, or "".  A colon that
+   belongs to the name of an existing file stays. */
 static const char *split_path(char *path) {
     if (access(path, F_OK) == 0) return "";
     for (size_t i = strlen(path); i-- > 0;) {
@@ -62,12 +65,14 @@ static ptie_status find_reader(const ptie_reader **out, const char *path, const 
     for (size_t i = 0; i < sizeof readers / sizeof *readers; i++) {
         if (!readers[i]->probe(head)) continue;
         if (*inside && !readers[i]->has_data_sets)
-            return PTIE_FAIL(PTIE_EFORMAT, "%s: %s files have no data sets (expected no ':', found ':%s')",
-                             path, readers[i]->name, inside);
+            return PTIE_FAIL(PTIE_EFORMAT,
+                             "%s: %s files have no data sets (expected no ':', found ':%s')", path,
+                             readers[i]->name, inside);
         *out = readers[i];
         return PTIE_OK;
     }
-    return PTIE_FAIL(PTIE_EFORMAT, "%s: unknown kind of file (expected NPY, PNG, TIFF or HDF5)", path);
+    return PTIE_FAIL(PTIE_EFORMAT, "%s: unknown kind of file (expected NPY, PNG, TIFF or HDF5)",
+                     path);
 }
 
 static ptie_status open_reader(ptie_recording *recording, char *file) {
@@ -83,8 +88,9 @@ ptie_status ptie_io_open(ptie_recording **out, const char *path) {
     PTIE_TRY(ptie_alloc_status(&recording, 1, sizeof *recording, path));
     recording->path = ptie_strdup(path);
     char *file = ptie_strdup(path);
-    ptie_status status = recording->path && file ? open_reader(recording, file)
-                                                 : PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
+    ptie_status status = recording->path && file
+                             ? open_reader(recording, file)
+                             : PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
     ptie_free(file);
     if (status != PTIE_OK) {
         ptie_io_close(recording);

@@ -36,7 +36,8 @@ static bool element_count(const int64_t *shape, int32_t rank, uint64_t limit, ui
     return *count <= limit;
 }
 
-/* --- writing ------------------------------------------------------------------------------------- */
+/* --- writing -------------------------------------------------------------------------------------
+ */
 
 static uint64_t view_bytes(const ptie_tensor_view *tensor) {
     uint64_t count = 0;
@@ -48,33 +49,36 @@ static uint64_t view_bytes(const ptie_tensor_view *tensor) {
 
 static json_t *tensor_entry(const ptie_tensor_view *tensor, uint64_t begin) {
     json_t *shape = json_array();
-    for (int32_t d = 0; d < tensor->rank; d++) json_array_append_new(shape, json_integer(tensor->shape[d]));
+    for (int32_t d = 0; d < tensor->rank; d++)
+        json_array_append_new(shape, json_integer(tensor->shape[d]));
     return json_pack("{s:s, s:o, s:[I,I]}", "dtype", "F32", "shape", shape, "data_offsets",
                      (json_int_t)begin, (json_int_t)(begin + view_bytes(tensor)));
 }
 
 /* The header as JSON text, freed with free(); NULL when memory is short. */
-static char *header_text(const ptie_tensor_view *tensors, size_t tensor_count, const ptie_note *notes,
-                         size_t note_count) {
+static char *header_text(const ptie_tensor_view *tensors, size_t tensor_count,
+                         const ptie_note *notes, size_t note_count) {
     json_t *header = json_object();
     json_t *metadata = json_object();
     bool failed = !header || !metadata;
     for (size_t i = 0; i < note_count && !failed; i++)
         failed = json_object_set_new(metadata, notes[i].key, json_string(notes[i].value)) != 0;
-    if (note_count > 0 && !failed)
-        failed = json_object_set(header, "__metadata__", metadata) != 0;
+    if (note_count > 0 && !failed) failed = json_object_set(header, "__metadata__", metadata) != 0;
     uint64_t begin = 0;
     for (size_t i = 0; i < tensor_count && !failed; i++) {
-        failed = json_object_set_new(header, tensors[i].name, tensor_entry(&tensors[i], begin)) != 0;
+        failed =
+            json_object_set_new(header, tensors[i].name, tensor_entry(&tensors[i], begin)) != 0;
         begin += view_bytes(&tensors[i]);
     }
-    char *text = failed ? NULL : json_dumps(header, JSON_COMPACT); /* keeps the order of insertion */
+    char *text =
+        failed ? NULL : json_dumps(header, JSON_COMPACT); /* keeps the order of insertion */
     json_decref(metadata);
     json_decref(header);
     return text;
 }
 
-static void write_content(FILE *stream, const char *header, const ptie_tensor_view *tensors, size_t count) {
+static void write_content(FILE *stream, const char *header, const ptie_tensor_view *tensors,
+                          size_t count) {
     size_t used = strlen(header);
     size_t padded = (used + DATA_ALIGNMENT - 1) / DATA_ALIGNMENT * DATA_ALIGNMENT;
     ptie_write_le(stream, padded, LENGTH_BYTES);
@@ -84,8 +88,9 @@ static void write_content(FILE *stream, const char *header, const ptie_tensor_vi
         ptie_write_floats(stream, tensors[i].data, view_bytes(&tensors[i]) / sizeof(float));
 }
 
-ptie_status ptie_safetensors_write(const char *path, const ptie_tensor_view *tensors, size_t tensor_count,
-                                   const ptie_note *notes, size_t note_count, bool overwrite) {
+ptie_status ptie_safetensors_write(const char *path, const ptie_tensor_view *tensors,
+                                   size_t tensor_count, const ptie_note *notes, size_t note_count,
+                                   bool overwrite) {
     ptie_stream stream;
     char *header = header_text(tensors, tensor_count, notes, note_count);
     if (!header) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
@@ -98,7 +103,8 @@ ptie_status ptie_safetensors_write(const char *path, const ptie_tensor_view *ten
     return status;
 }
 
-/* --- reading ------------------------------------------------------------------------------------- */
+/* --- reading -------------------------------------------------------------------------------------
+ */
 
 /* A tensor entry and where its data lie. */
 typedef struct entry {
@@ -129,8 +135,9 @@ static ptie_status parse_entry(entry *out, const char *path, const char *name, c
     const char *type = json_string_value(json_object_get(object, "dtype"));
     if (!type) return damaged(path, name, "has no dtype");
     if (strcmp(type, "F32") != 0)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: tensor '%s': type not read (expected F32, found %s)", path,
-                         name, type);
+        return PTIE_FAIL(PTIE_EUNSUPPORTED,
+                         "%s: tensor '%s': type not read (expected F32, found %s)", path, name,
+                         type);
     out->view.name = name;
     out->view.rank = integers(json_object_get(object, "shape"), 0, 4, out->view.shape);
     if (out->view.rank < 0) return damaged(path, name, "bad shape (expected 0 to 4 sizes)");
@@ -138,12 +145,15 @@ static ptie_status parse_entry(entry *out, const char *path, const char *name, c
         return damaged(path, name, "bad data_offsets (expected two numbers)");
     out->begin = (uint64_t)offsets[0];
     out->end = (uint64_t)offsets[1];
-    if (out->begin > out->end || out->end > data_bytes) return damaged(path, name, "data outside the file");
+    if (out->begin > out->end || out->end > data_bytes)
+        return damaged(path, name, "data outside the file");
     if (!element_count(out->view.shape, out->view.rank, data_bytes / sizeof(float), &count))
         return damaged(path, name, "shape larger than the file");
     if (count * sizeof(float) != out->end - out->begin)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: tensor '%s': data do not fit the shape (expected %llu bytes, "
-                         "found %llu)", path, name, (unsigned long long)(count * sizeof(float)),
+        return PTIE_FAIL(PTIE_EFORMAT,
+                         "%s: tensor '%s': data do not fit the shape (expected %llu bytes, "
+                         "found %llu)",
+                         path, name, (unsigned long long)(count * sizeof(float)),
                          (unsigned long long)(out->end - out->begin));
     return PTIE_OK;
 }
@@ -155,16 +165,19 @@ static int by_position(const void *left, const void *right) {
 }
 
 /* Sorted entries must cover the data without hole or overlap. */
-static ptie_status check_cover(const char *path, const entry *entries, size_t count, uint64_t data_bytes) {
+static ptie_status check_cover(const char *path, const entry *entries, size_t count,
+                               uint64_t data_bytes) {
     uint64_t end = 0;
     for (size_t i = 0; i < count; i++) {
         if (entries[i].begin != end)
             return damaged(path, entries[i].view.name,
-                           entries[i].begin > end ? "a hole before its data" : "overlaps another tensor");
+                           entries[i].begin > end ? "a hole before its data"
+                                                  : "overlaps another tensor");
         end = entries[i].end;
     }
     if (end != data_bytes)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: data that belong to no tensor (expected %llu bytes, found %llu)",
+        return PTIE_FAIL(PTIE_EFORMAT,
+                         "%s: data that belong to no tensor (expected %llu bytes, found %llu)",
                          path, (unsigned long long)end, (unsigned long long)data_bytes);
     return PTIE_OK;
 }
@@ -174,7 +187,8 @@ static ptie_status parse_notes(ptie_safetensors *file, const char *path, json_t 
     json_t *value;
     if (!json_is_object(metadata))
         return PTIE_FAIL(PTIE_EFORMAT, "%s: __metadata__ is not an object", path);
-    PTIE_TRY(ptie_alloc_status(&file->notes, json_object_size(metadata), sizeof *file->notes, path));
+    PTIE_TRY(
+        ptie_alloc_status(&file->notes, json_object_size(metadata), sizeof *file->notes, path));
     json_object_foreach(metadata, key, value) {
         if (!json_is_string(value))
             return PTIE_FAIL(PTIE_EFORMAT, "%s: __metadata__ '%s' is not a string", path, key);
@@ -202,14 +216,16 @@ static ptie_status parse_header(ptie_safetensors *file, const char *path, size_t
                                 uint64_t data_bytes) {
     json_error_t error;
     entry *entries = NULL;
-    file->json = json_loadb((const char *)file->header, header_bytes, JSON_REJECT_DUPLICATES, &error);
+    file->json =
+        json_loadb((const char *)file->header, header_bytes, JSON_REJECT_DUPLICATES, &error);
     if (!json_is_object(file->json))
         return PTIE_FAIL(PTIE_EFORMAT, "%s: bad header: %s", path,
                          file->json ? "not a JSON object" : error.text);
     size_t members = json_object_size(file->json);
     PTIE_TRY(ptie_alloc_status(&entries, members, sizeof *entries, path));
     ptie_status status = parse_members(file, path, entries, data_bytes);
-    if (status == PTIE_OK) status = ptie_alloc_status(&file->tensors, members, sizeof *file->tensors, path);
+    if (status == PTIE_OK)
+        status = ptie_alloc_status(&file->tensors, members, sizeof *file->tensors, path);
     for (size_t i = 0; status == PTIE_OK && i < file->tensor_count; i++) {
         file->tensors[i] = entries[i].view;
         file->tensors[i].data = (const float *)((const char *)file->data + entries[i].begin);
@@ -219,8 +235,8 @@ static ptie_status parse_header(ptie_safetensors *file, const char *path, size_t
 }
 
 /* Reads length, header and data into *file; checks only sizes. */
-static ptie_status read_parts(ptie_safetensors *file, const char *path, FILE *stream, uint64_t file_bytes,
-                              size_t *header_bytes, uint64_t *data_bytes) {
+static ptie_status read_parts(ptie_safetensors *file, const char *path, FILE *stream,
+                              uint64_t file_bytes, size_t *header_bytes, uint64_t *data_bytes) {
     unsigned char length[LENGTH_BYTES];
     if (fread(length, 1, sizeof length, stream) != sizeof length)
         return PTIE_FAIL(PTIE_EFORMAT, "%s: too short for a safetensors file", path);
@@ -246,7 +262,8 @@ ptie_status ptie_safetensors_read(ptie_safetensors **out, const char *path) {
     *out = NULL;
     PTIE_TRY(ptie_input_open(&stream, path, &file_bytes));
     ptie_status status = ptie_alloc_status(&file, 1, sizeof *file, path);
-    if (status == PTIE_OK) status = read_parts(file, path, stream, file_bytes, &header_bytes, &data_bytes);
+    if (status == PTIE_OK)
+        status = read_parts(file, path, stream, file_bytes, &header_bytes, &data_bytes);
     if (status == PTIE_OK) status = parse_header(file, path, header_bytes, data_bytes);
     fclose(stream);
     if (status != PTIE_OK) {

@@ -26,7 +26,8 @@ static void describe(ptie_text *text, const ptie_recording_info *info) {
     ptie_text_append(text, "ImageJ=1.53t\nimages=%lld\nframes=%lld\n", frames, frames);
     if (frames > 1) ptie_text_append(text, "hyperstack=true\n");
     if (info->pixel_m > 0) ptie_text_append(text, "unit=um\n");
-    if (info->frame_rate_hz > 0) ptie_text_append(text, "finterval=%.9g\n", 1 / info->frame_rate_hz);
+    if (info->frame_rate_hz > 0)
+        ptie_text_append(text, "finterval=%.9g\n", 1 / info->frame_rate_hz);
     if (info->unit[0]) ptie_text_append(text, "vunit=%s\n", info->unit);
     ptie_text_append(text, "loop=false\n");
 }
@@ -52,7 +53,8 @@ static void write_header(const layout *l, uint64_t first_directory) {
     write_offset(l, first_directory);
 }
 
-static void write_entry(const layout *l, unsigned tag, unsigned type, uint64_t count, uint64_t value) {
+static void write_entry(const layout *l, unsigned tag, unsigned type, uint64_t count,
+                        uint64_t value) {
     ptie_write_le(l->out, tag, 2);
     ptie_write_le(l->out, type, 2);
     write_offset(l, count);
@@ -63,7 +65,8 @@ static void write_entry(const layout *l, unsigned tag, unsigned type, uint64_t c
 static uint64_t write_directory(const layout *l, uint64_t frame, uint64_t at) {
     const uint64_t entries = frame == 0 ? 14 : 13;
     const uint64_t bytes = l->big ? 8 + 20 * entries + 8 : 2 + 12 * entries + 4;
-    const uint64_t resolution = l->big ? l->resolution : l->resolution_at; /* 8 bytes fit into an entry */
+    const uint64_t resolution =
+        l->big ? l->resolution : l->resolution_at; /* 8 bytes fit into an entry */
     const unsigned offset_type = l->big ? LONG8 : LONG;
     ptie_write_le(l->out, entries, l->big ? 8 : 2);
     write_entry(l, 256, LONG, 1, l->width);
@@ -72,9 +75,10 @@ static uint64_t write_directory(const layout *l, uint64_t frame, uint64_t at) {
     write_entry(l, 259, SHORT, 1, 1);  /* no compression */
     write_entry(l, 262, SHORT, 1, 1);  /* 0 is black */
     if (frame == 0) write_entry(l, 270, ASCII, l->text_bytes, l->text_at);
-    write_entry(l, 273, offset_type, 1, PTIE_TIFF_DATA + frame * l->frame_bytes); /* the only strip */
-    write_entry(l, 277, SHORT, 1, 1);                                         /* samples per pixel */
-    write_entry(l, 278, LONG, 1, l->height);                               /* rows per strip */
+    write_entry(l, 273, offset_type, 1,
+                PTIE_TIFF_DATA + frame * l->frame_bytes); /* the only strip */
+    write_entry(l, 277, SHORT, 1, 1);                     /* samples per pixel */
+    write_entry(l, 278, LONG, 1, l->height);              /* rows per strip */
     write_entry(l, 279, offset_type, 1, l->frame_bytes);
     write_entry(l, 282, RATIONAL, 1, resolution);
     write_entry(l, 283, RATIONAL, 1, resolution);
@@ -84,7 +88,8 @@ static uint64_t write_directory(const layout *l, uint64_t frame, uint64_t at) {
     return bytes;
 }
 
-static layout plan(FILE *out, const ptie_recording_info *info, uint64_t text_length, uint64_t largest) {
+static layout plan(FILE *out, const ptie_recording_info *info, uint64_t text_length,
+                   uint64_t largest) {
     const uint64_t width = (uint64_t)info->width_px, height = (uint64_t)info->height_px;
     const uint64_t frames = (uint64_t)info->frames, frame_bytes = 4 * width * height;
     const uint64_t data_end = PTIE_TIFF_DATA + frames * frame_bytes;

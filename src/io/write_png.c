@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* 16-bit grey PNG, one file per frame.  Each frame uses the whole range of 16 bits; text chunks say how its
- * values come back.  All files keep their ".part" names until the last one is complete. */
+/* 16-bit grey PNG, one file per frame.  Each frame uses the whole range of 16 bits; text chunks say
+ * how its values come back.  All files keep their ".part" names until the last one is complete. */
 #include <errno.h>
 #include <math.h>
 #include <png.h>
@@ -67,7 +67,8 @@ static ptie_status png_create(void **state, const ptie_writer_job *job) {
     *state = NULL;
     bool numbered = ptie_pattern_find(&pattern, job->path);
     if (!numbered && job->info.frames > 1)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: one PNG for %lld frames (expected a pattern such as flow_%%04d.png)",
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "%s: one PNG for %lld frames (expected a pattern such as flow_%%04d.png)",
                          job->path, (long long)job->info.frames);
     PTIE_TRY(ptie_alloc_status(&output, 1, sizeof *output, job->path));
     output->job = *job;
@@ -167,10 +168,13 @@ static ptie_status write_file(encoder *e, const ptie_output_file *file) {
 }
 
 static ptie_status file_name(const png_output *output, size_t number, char path[PATH_BYTES]) {
-    if (output->numbered) return ptie_pattern_name(&output->pattern, (int64_t)number, path, PATH_BYTES);
+    if (output->numbered)
+        return ptie_pattern_name(&output->pattern, (int64_t)number, path, PATH_BYTES);
     if (number > 0)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: one PNG for several frames (expected a pattern such as "
-                         "flow_%%04d.png)", output->job.path);
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "%s: one PNG for several frames (expected a pattern such as "
+                         "flow_%%04d.png)",
+                         output->job.path);
     snprintf(path, PATH_BYTES, "%s", output->job.path);
     return PTIE_OK;
 }
@@ -181,7 +185,8 @@ static ptie_status png_append(void *state, const float *frame) {
     const int32_t width = output->job.info.width_px, height = output->job.info.height_px;
     PTIE_TRY(file_name(output, output->count, path));
     PTIE_TRY(ptie_image_finite(frame, width, height, path));
-    PTIE_TRY(ptie_array_room(&output->files, output->count, &output->capacity, sizeof *output->files, path));
+    PTIE_TRY(ptie_array_room(&output->files, output->count, &output->capacity,
+                             sizeof *output->files, path));
     ptie_output_file *file = &output->files[output->count];
     PTIE_TRY(ptie_output_open(file, path, output->job.overwrite));
     output->count++;
@@ -196,7 +201,8 @@ static ptie_status png_complete(void *state, int64_t frames) {
     char path[PATH_BYTES];
     ptie_status status = PTIE_OK;
     size_t done = 0;
-    while (done < output->count && status == PTIE_OK) status = ptie_output_commit(&output->files[done++]);
+    while (done < output->count && status == PTIE_OK)
+        status = ptie_output_commit(&output->files[done++]);
     for (size_t i = 0; status != PTIE_OK && i + 1 < done; i++)
         if (file_name(output, i, path) == PTIE_OK) remove(path);
     png_discard(output);

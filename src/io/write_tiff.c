@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* float32 TIFF, one page per frame, as ImageJ and Fiji scale it.  Written here rather than by libtiff: the
- * frames follow each other without gaps from byte 16 on and the directories come last, so that a file of any
- * number of frames is written in one pass, may be mapped into memory, and becomes BigTIFF only if it must.
+/* float32 TIFF, one page per frame, as ImageJ and Fiji scale it.  Written here rather than by
+ * libtiff: the frames follow each other without gaps from byte 16 on and the directories come last,
+ * so that a file of any number of frames is written in one pass, may be mapped into memory, and
+ * becomes BigTIFF only if it must.
  */
 #include "base/memory.h"
 #include "io/endian.h"
@@ -38,7 +39,8 @@ static ptie_status tiff_create(void **state, const ptie_writer_job *job) {
 
 static ptie_status tiff_append(void *state, const float *frame) {
     const tiff_output *tiff = state;
-    ptie_write_floats(tiff->stream.out, frame, (uint64_t)tiff->info.width_px * (uint64_t)tiff->info.height_px);
+    ptie_write_floats(tiff->stream.out, frame,
+                      (uint64_t)tiff->info.width_px * (uint64_t)tiff->info.height_px);
     return ptie_stream_check(&tiff->stream);
 }
 

@@ -18,8 +18,8 @@ struct ptie_writer {
 };
 
 static const ptie_writer_format *find_format(const char *path) {
-    static const ptie_writer_format *const formats[] = {&ptie_write_npy, &ptie_write_png, &ptie_write_tiff,
-                                                        &ptie_write_h5};
+    static const ptie_writer_format *const formats[] = {&ptie_write_npy, &ptie_write_png,
+                                                        &ptie_write_tiff, &ptie_write_h5};
     const char *dot = strrchr(path, '.');
     for (size_t i = 0; dot && i < sizeof formats / sizeof *formats; i++)
         for (const char *const *ending = formats[i]->endings; *ending; ending++)
@@ -39,15 +39,18 @@ ptie_status ptie_io_create(ptie_writer **out, const char *path, const char *name
     *out = NULL;
     const ptie_writer_format *format = find_format(path);
     if (!format)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED,
-                         "%s: cannot write this kind of file (expected .npy .tif .tiff .h5 .hdf5 or .png)", path);
+        return PTIE_FAIL(
+            PTIE_EUNSUPPORTED,
+            "%s: cannot write this kind of file (expected .npy .tif .tiff .h5 .hdf5 or .png)",
+            path);
     PTIE_TRY(ptie_alloc_status(&writer, 1, sizeof *writer, path));
     writer->format = format;
     writer->path = ptie_strdup(path);
     writer->name = ptie_strdup(name);
     writer->job = (ptie_writer_job){writer->path, writer->name, *info, overwrite};
-    ptie_status status = writer->path && writer->name ? format->create(&writer->state, &writer->job)
-                                                      : PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
+    ptie_status status = writer->path && writer->name
+                             ? format->create(&writer->state, &writer->job)
+                             : PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
     if (status != PTIE_OK) {
         writer_free(writer);
         return status;
@@ -59,7 +62,8 @@ ptie_status ptie_io_create(ptie_writer **out, const char *path, const char *name
 ptie_status ptie_io_append(ptie_writer *writer, const float *frame) {
     const int64_t planned = writer->job.info.frames;
     if (planned > 0 && writer->written == planned)
-        return PTIE_FAIL(PTIE_ESTATE, "%s: too many frames (expected %lld)", writer->path, (long long)planned);
+        return PTIE_FAIL(PTIE_ESTATE, "%s: too many frames (expected %lld)", writer->path,
+                         (long long)planned);
     ptie_status status = writer->format->append(writer->state, frame);
     if (status == PTIE_OK)
         writer->written++;
@@ -72,10 +76,12 @@ ptie_status ptie_io_append(ptie_writer *writer, const float *frame) {
 static ptie_status check_frames(const ptie_writer *writer) {
     const int64_t planned = writer->job.info.frames;
     if (writer->failed)
-        return PTIE_FAIL(PTIE_EIO, "%s: cannot complete the file: a frame could not be written", writer->path);
+        return PTIE_FAIL(PTIE_EIO, "%s: cannot complete the file: a frame could not be written",
+                         writer->path);
     if (writer->written == 0 || (planned > 0 && writer->written < planned))
-        return PTIE_FAIL(PTIE_ESTATE, "%s: too few frames (expected %lld, found %lld)", writer->path,
-                         (long long)(planned > 0 ? planned : 1), (long long)writer->written);
+        return PTIE_FAIL(PTIE_ESTATE, "%s: too few frames (expected %lld, found %lld)",
+                         writer->path, (long long)(planned > 0 ? planned : 1),
+                         (long long)writer->written);
     return PTIE_OK;
 }
 

@@ -15,7 +15,7 @@ typedef struct ptie_writer_job {
 } ptie_writer_job;
 
 typedef struct ptie_writer_format {
-    const char *endings[3]; /* NULL after the last */
+    const char *endings[3];                                          /* NULL after the last */
     ptie_status (*create)(void **state, const ptie_writer_job *job); /* on failure *state is NULL */
     ptie_status (*append)(void *state, const float *frame);
     /* After `frames` successful appends: completes the file or leaves none; frees in any case. */

@@ -168,14 +168,15 @@ static void every_truncation_is_refused(void **state) {
 
 static void python_reads_it(void **state) {
     (void)state;
-    support_python("import h5py, sys\n"
-               "f = h5py.File(sys.argv[1])\n"
-               "assert f['entry/data/phase'].shape == (5, 3, 2) and f['entry/data/phase'].dtype == '<f4'\n"
-               "assert f['entry/data/phase'][4, 2, 1] == 29 / 4 and f['counts'][0] == 2**40\n"
-               "assert f.attrs['preset'] == 'size = 3 µm\\nname = paper\\n'\n"
-               "assert f.attrs['empty'] == ''\n"
-               "assert list(f['entry/data'].attrs['axes']) == ['time', 'y', 'x']\n",
-               example("python.h5"));
+    support_python(
+        "import h5py, sys\n"
+        "f = h5py.File(sys.argv[1])\n"
+        "assert f['entry/data/phase'].shape == (5, 3, 2) and f['entry/data/phase'].dtype == '<f4'\n"
+        "assert f['entry/data/phase'][4, 2, 1] == 29 / 4 and f['counts'][0] == 2**40\n"
+        "assert f.attrs['preset'] == 'size = 3 µm\\nname = paper\\n'\n"
+        "assert f.attrs['empty'] == ''\n"
+        "assert list(f['entry/data'].attrs['axes']) == ['time', 'y', 'x']\n",
+        example("python.h5"));
 }
 
 int main(void) {

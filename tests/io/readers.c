@@ -5,104 +5,93 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
+#include "golden.h"
 #include "io/recording.h"
 
-enum { T = 3, H = 5, W = 7 };
-
-/* The value that make_images.py gives to a pixel, for the kind of the stored sample. */
-static double expected_value(const char *sample, int64_t t, int32_t y, int32_t x) {
-    double f = x + 10 * y + 50 * (double)t;
-    return sample[0] == 'u' ? f : sample[0] == 'i' ? f - 20 : f / 2 - 20;
-}
-
-static const char *image(const char *name) {
-    char path[200];
-    snprintf(path, sizeof path, "tests/golden/images/%s", name);
-    return support_source(path);
-}
+enum { FRAMES = 3 };
 
 /* Opens, checks what the info says, reads every frame, last first, and compares every pixel. */
-static void check_recording(const char *path, const char *format, const char *sample, int64_t frames,
-                            unsigned modulus) {
+static void check_recording(const char *path, const char *format, const char *sample,
+                            int64_t frames, unsigned modulus) {
     ptie_recording *recording;
-    float data[H][W];
+    float data[GOLDEN_PIXELS];
     print_message("# %s\n", path);
     assert_ok(ptie_recording_open(&recording, path));
     const ptie_recording_info *info = ptie_recording_get_info(recording);
     assert_string_equal(info->format, format);
     assert_string_equal(info->sample, sample);
-    assert_int_equal(info->width_px, W);
-    assert_int_equal(info->height_px, H);
+    assert_int_equal(info->width_px, GOLDEN_WIDTH);
+    assert_int_equal(info->height_px, GOLDEN_HEIGHT);
     assert_int_equal(info->frames, frames);
     for (int64_t t = frames - 1; t >= 0; t--) {
-        assert_ok(ptie_recording_read(recording, t, data[0]));
-        for (int32_t y = 0; y < H; y++)
-            for (int32_t x = 0; x < W; x++) {
-                double value = expected_value(sample, t, y, x);
-                if (modulus) value = (unsigned)value % modulus;
-                if ((double)data[y][x] == value) continue;
-                fail_msg("%s: frame %d, x=%d, y=%d: expected %g, found %g", path, (int)t, x, y, value,
-                         (double)data[y][x]);
-            }
+        assert_ok(ptie_recording_read(recording, t, data));
+        for (int32_t i = 0; i < GOLDEN_PIXELS; i++) {
+            double value = golden_value(sample, t, i);
+            if (modulus) value = (unsigned)value % modulus;
+            if ((double)data[i] == value) continue;
+            fail_msg("%s: frame %d, pixel %d: expected %g, found %g", path, (int)t, i, value,
+                     (double)data[i]);
+        }
     }
-    assert_fails(ptie_recording_read(recording, frames, data[0]), PTIE_EINVAL, "frame");
-    assert_fails(ptie_recording_read(recording, -1, data[0]), PTIE_EINVAL, "frame");
+    assert_fails(ptie_recording_read(recording, frames, data), PTIE_EINVAL, "frame");
+    assert_fails(ptie_recording_read(recording, -1, data), PTIE_EINVAL, "frame");
     ptie_recording_close(recording);
 }
 
 static void npy_of_every_type(void **state) {
     (void)state;
     static const char *const types[][2] = {
-        {"u1", "u8"},      {"i1", "i8"},      {"u2", "u16"},     {"u2_big", "u16"}, {"i2", "i16"},
-        {"i2_big", "i16"}, {"u4", "u32"},     {"u4_big", "u32"}, {"i4", "i32"},     {"i4_big", "i32"},
-        {"u8", "u64"},     {"u8_big", "u64"}, {"i8", "i64"},     {"i8_big", "i64"}, {"f4", "f32"},
-        {"f4_big", "f32"}, {"f8", "f64"},     {"f8_big", "f64"}, {"version2", "u16"}, {"version3", "u16"},
+        {"u1", "u8"},  {"i1", "i8"},      {"u2", "u16"},       {"u2_big", "u16"},
+        {"i2", "i16"}, {"i2_big", "i16"}, {"u4", "u32"},       {"u4_big", "u32"},
+        {"i4", "i32"}, {"i4_big", "i32"}, {"u8", "u64"},       {"u8_big", "u64"},
+        {"i8", "i64"}, {"i8_big", "i64"}, {"f4", "f32"},       {"f4_big", "f32"},
+        {"f8", "f64"}, {"f8_big", "f64"}, {"version2", "u16"}, {"version3", "u16"},
     };
     for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
         char name[40];
         snprintf(name, sizeof name, "%s.npy", types[i][0]);
-        check_recording(image(name), "NPY", types[i][1], T, 0);
+        check_recording(golden_image(name), "NPY", types[i][1], FRAMES, 0);
     }
-    check_recording(image("one_frame.npy"), "NPY", "f32", 1, 0);
+    check_recording(golden_image("one_frame.npy"), "NPY", "f32", 1, 0);
 }
 
 static void png_of_every_depth(void **state) {
     (void)state;
-    check_recording(image("grey1.png"), "PNG", "u8", 1, 2);
-    check_recording(image("grey2.png"), "PNG", "u8", 1, 4);
-    check_recording(image("grey4.png"), "PNG", "u8", 1, 16);
-    check_recording(image("grey8.png"), "PNG", "u8", 1, 0);
-    check_recording(image("grey16.png"), "PNG", "u16", 1, 0);
-    check_recording(image("interlaced.png"), "PNG", "u8", 1, 0);
-    check_recording(image("interlaced16.png"), "PNG", "u16", 1, 0);
-    check_recording(image("palette.png"), "PNG", "u8", 1, 0);
-    check_recording(image("opaque.png"), "PNG", "u8", 1, 0);
-    check_recording(image("rgb_grey.png"), "PNG", "u8", 1, 0);
-    check_recording(image("pil16.png"), "PNG", "u16", 1, 0);
+    check_recording(golden_image("grey1.png"), "PNG", "u8", 1, 2);
+    check_recording(golden_image("grey2.png"), "PNG", "u8", 1, 4);
+    check_recording(golden_image("grey4.png"), "PNG", "u8", 1, 16);
+    check_recording(golden_image("grey8.png"), "PNG", "u8", 1, 0);
+    check_recording(golden_image("grey16.png"), "PNG", "u16", 1, 0);
+    check_recording(golden_image("interlaced.png"), "PNG", "u8", 1, 0);
+    check_recording(golden_image("interlaced16.png"), "PNG", "u16", 1, 0);
+    check_recording(golden_image("palette.png"), "PNG", "u8", 1, 0);
+    check_recording(golden_image("opaque.png"), "PNG", "u8", 1, 0);
+    check_recording(golden_image("rgb_grey.png"), "PNG", "u8", 1, 0);
+    check_recording(golden_image("pil16.png"), "PNG", "u16", 1, 0);
 }
 
 static void tiff_of_every_kind(void **state) {
     (void)state;
-    check_recording(image("u1.tif"), "TIFF", "u8", T, 0);
-    check_recording(image("u2.tif"), "TIFF", "u16", T, 0);
-    check_recording(image("i2.tif"), "TIFF", "i16", T, 0);
-    check_recording(image("u4.tif"), "TIFF", "u32", T, 0);
-    check_recording(image("f4.tif"), "TIFF", "f32", T, 0);
-    check_recording(image("f8.tif"), "TIFF", "f64", T, 0);
-    check_recording(image("big_endian.tif"), "TIFF", "u16", T, 0);
-    check_recording(image("bigtiff.tif"), "TIFF", "f32", T, 0);
-    check_recording(image("bigtiff_big_endian.tif"), "TIFF", "f32", T, 0);
-    check_recording(image("strips.tif"), "TIFF", "u16", T, 0);
-    check_recording(image("tiles.tif"), "TIFF", "u16", T, 0);
-    check_recording(image("deflate.tif"), "TIFF", "u16", T, 0);
-    check_recording(image("lzw.tif"), "TIFF", "u8", 1, 0);
-    check_recording(image("imagej.tif"), "TIFF", "f32", T, 0);
+    check_recording(golden_image("u1.tif"), "TIFF", "u8", FRAMES, 0);
+    check_recording(golden_image("u2.tif"), "TIFF", "u16", FRAMES, 0);
+    check_recording(golden_image("i2.tif"), "TIFF", "i16", FRAMES, 0);
+    check_recording(golden_image("u4.tif"), "TIFF", "u32", FRAMES, 0);
+    check_recording(golden_image("f4.tif"), "TIFF", "f32", FRAMES, 0);
+    check_recording(golden_image("f8.tif"), "TIFF", "f64", FRAMES, 0);
+    check_recording(golden_image("big_endian.tif"), "TIFF", "u16", FRAMES, 0);
+    check_recording(golden_image("bigtiff.tif"), "TIFF", "f32", FRAMES, 0);
+    check_recording(golden_image("bigtiff_big_endian.tif"), "TIFF", "f32", FRAMES, 0);
+    check_recording(golden_image("strips.tif"), "TIFF", "u16", FRAMES, 0);
+    check_recording(golden_image("tiles.tif"), "TIFF", "u16", FRAMES, 0);
+    check_recording(golden_image("deflate.tif"), "TIFF", "u16", FRAMES, 0);
+    check_recording(golden_image("lzw.tif"), "TIFF", "u8", 1, 0);
+    check_recording(golden_image("imagej.tif"), "TIFF", "f32", FRAMES, 0);
 }
 
 static void imagej_scale_is_read(void **state) {
     (void)state;
     ptie_recording *recording;
-    assert_ok(ptie_recording_open(&recording, image("imagej.tif")));
+    assert_ok(ptie_recording_open(&recording, golden_image("imagej.tif")));
     const ptie_recording_info *info = ptie_recording_get_info(recording);
     assert_near(info->pixel_m, 2e-6, 1e-20); /* 0.5 pixels per um */
     assert_near(info->frame_rate_hz, 4, 1e-12);
@@ -112,21 +101,21 @@ static void imagej_scale_is_read(void **state) {
 static void hdf5_named_or_found(void **state) {
     (void)state;
     char path[300];
-    check_recording(image("only.h5"), "HDF5", "u16", T, 0);
-    check_recording(image("block.h5"), "HDF5", "f64", 1, 0);
-    check_recording(image("nexus.h5"), "HDF5", "f32", T, 0);
-    snprintf(path, sizeof path, "%s:/plus", image("several.h5"));
-    check_recording(path, "HDF5", "u8", T, 0);
-    snprintf(path, sizeof path, "%s:/minus", image("several.h5"));
-    check_recording(path, "HDF5", "i32", T, 0);
-    snprintf(path, sizeof path, "%s:/link", image("several.h5"));
-    check_recording(path, "HDF5", "u8", T, 0);
+    check_recording(golden_image("only.h5"), "HDF5", "u16", FRAMES, 0);
+    check_recording(golden_image("block.h5"), "HDF5", "f64", 1, 0);
+    check_recording(golden_image("nexus.h5"), "HDF5", "f32", FRAMES, 0);
+    snprintf(path, sizeof path, "%s:/plus", golden_image("several.h5"));
+    check_recording(path, "HDF5", "u8", FRAMES, 0);
+    snprintf(path, sizeof path, "%s:/minus", golden_image("several.h5"));
+    check_recording(path, "HDF5", "i32", FRAMES, 0);
+    snprintf(path, sizeof path, "%s:/link", golden_image("several.h5"));
+    check_recording(path, "HDF5", "u8", FRAMES, 0);
 }
 
 static void nexus_units_are_read(void **state) {
     (void)state;
     ptie_recording *recording;
-    assert_ok(ptie_recording_open(&recording, image("nexus.h5")));
+    assert_ok(ptie_recording_open(&recording, golden_image("nexus.h5")));
     const ptie_recording_info *info = ptie_recording_get_info(recording);
     assert_string_equal(info->dataset, "/entry/plot/phase");
     assert_string_equal(info->unit, "rad");
@@ -151,7 +140,8 @@ static void what_cannot_be_read_is_named(void **state) {
         {"bad_empty.npy", "", PTIE_EFORMAT, "no valid number of frames"},
         {"bad_white.tif", "", PTIE_EUNSUPPORTED, "not a grey image"},
         {"bad_rgb.tif", "", PTIE_EUNSUPPORTED, "expected 1 sample per pixel, found 3"},
-        {"bad_pages.tif", "", PTIE_EUNSUPPORTED, "page 1 differs from page 0 (expected 7 x 5 u8, found 7 x 4"},
+        {"bad_pages.tif", "", PTIE_EUNSUPPORTED,
+         "page 1 differs from page 0 (expected 7 x 5 u8, found 7 x 4"},
         {"bad_none.h5", "", PTIE_EFORMAT, "no numeric data set of 2 or 3 dimensions"},
         {"several.h5", "", PTIE_EFORMAT, "found /minus, /plus)"},
         {"several.h5", ":/line", PTIE_EUNSUPPORTED, "/line has 1 dimensions"},
@@ -167,7 +157,7 @@ static void what_cannot_be_read_is_named(void **state) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         ptie_recording *recording = (ptie_recording *)&cases; /* must become NULL */
         char path[300];
-        snprintf(path, sizeof path, "%s%s", image(cases[i].name), cases[i].inside);
+        snprintf(path, sizeof path, "%s%s", golden_image(cases[i].name), cases[i].inside);
         print_message("# %s%s\n", cases[i].name, cases[i].inside);
         assert_fails(ptie_recording_open(&recording, path), cases[i].status, cases[i].fragment);
         assert_non_null(strstr(ptie_last_error(), "tests/golden/images/"));
@@ -191,19 +181,21 @@ static void pixels_that_cannot_be_read_are_named(void **state) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         ptie_recording *recording;
-        float data[H * W];
-        assert_ok(ptie_recording_open(&recording, image(cases[i].name)));
-        assert_fails(ptie_recording_read(recording, cases[i].frame, data), cases[i].status, cases[i].fragment);
+        float data[GOLDEN_PIXELS];
+        assert_ok(ptie_recording_open(&recording, golden_image(cases[i].name)));
+        assert_fails(ptie_recording_read(recording, cases[i].frame, data), cases[i].status,
+                     cases[i].fragment);
         assert_non_null(strstr(ptie_last_error(), cases[i].name));
         ptie_recording_close(recording);
     }
 }
 
-/* --- sequences ----------------------------------------------------------------------------------- */
+/* --- sequences -----------------------------------------------------------------------------------
+ */
 
 static void copy(const char *from, const char *to) {
     size_t bytes;
-    unsigned char *data = support_read(image(from), &bytes);
+    unsigned char *data = support_read(golden_image(from), &bytes);
     support_write(support_temporary(to), data, bytes);
     free(data);
 }
@@ -254,7 +246,7 @@ static void a_pattern_takes_only_what_fits(void **state) {
     write_constant("pattern/a_07.npy", 2, 0);
     write_constant("pattern/a_08.npy", 2, 1);
     write_constant("pattern/a_100.npy", 2, 2);
-    write_constant("pattern/a_9.npy", 2, -1);   /* too few digits */
+    write_constant("pattern/a_9.npy", 2, -1);    /* too few digits */
     write_constant("pattern/a_0101.npy", 2, -1); /* too many */
     write_constant("pattern/b_09.npy", 2, -1);
     write_constant("pattern/a_x9.npy", 2, -1);
@@ -264,7 +256,7 @@ static void a_pattern_takes_only_what_fits(void **state) {
 static void frames_must_be_alike(void **state) {
     (void)state;
     ptie_recording *recording;
-    float data[H * W];
+    float data[GOLDEN_PIXELS];
     make_folder("unlike");
     write_constant("unlike/a_0.npy", 2, 0);
     write_constant("unlike/a_1.npy", 3, 0);
@@ -275,7 +267,8 @@ static void frames_must_be_alike(void **state) {
     assert_ok(ptie_recording_read(recording, 0, data));
     assert_fails(ptie_recording_read(recording, 1, data), PTIE_ESIZE,
                  "a_1.npy: unlike the first frame (expected 2 x 2 f32, found 3 x 2 f32)");
-    assert_fails(ptie_recording_read(recording, 3, data), PTIE_EUNSUPPORTED, "expected 1 frame, found 3");
+    assert_fails(ptie_recording_read(recording, 3, data), PTIE_EUNSUPPORTED,
+                 "expected 1 frame, found 3");
     assert_fails(ptie_recording_read(recording, 4, data), PTIE_ESIZE, "found 7 x 5 u8");
     remove(support_temporary("unlike/a_2.npy"));
     assert_fails(ptie_recording_read(recording, 2, data), PTIE_EIO, "a_2.npy");
@@ -289,7 +282,8 @@ static void a_folder_without_images_is_refused(void **state) {
     (void)state;
     ptie_recording *recording;
     make_folder("empty");
-    assert_fails(ptie_recording_open(&recording, support_temporary("empty")), PTIE_EIO, "no frames");
+    assert_fails(ptie_recording_open(&recording, support_temporary("empty")), PTIE_EIO,
+                 "no frames");
 }
 
 static void real_recordings_are_read(void **state) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* safetensors: round trip, the exact bytes, what NumPy makes of them, and every way to be damaged. */
+/* safetensors: round trip, the exact bytes, what NumPy makes of them, and every way to be damaged.
+ */
 #include "support/files.h"
 
 #include <stdlib.h>
@@ -53,7 +54,8 @@ static void what_is_written_is_read(void **state) {
 static void bytes_are_those_of_the_format(void **state) {
     (void)state;
     const char *path = support_temporary("bytes.safetensors");
-    const char header[] = "{\"scale\":{\"dtype\":\"F32\",\"shape\":[],\"data_offsets\":[0,4]}}       ";
+    const char header[] =
+        "{\"scale\":{\"dtype\":\"F32\",\"shape\":[],\"data_offsets\":[0,4]}}       ";
     const ptie_tensor_view scale = {.name = "scale", .data = step};
     size_t bytes;
     assert_ok(ptie_safetensors_write(path, &scale, 1, NULL, 0, false));
@@ -69,16 +71,18 @@ static void bytes_are_those_of_the_format(void **state) {
 
 static void numpy_reads_it(void **state) {
     (void)state;
-    support_python("import json, sys, numpy as np\n"
-                   "b = open(sys.argv[1], 'rb').read()\n"
-                   "n = int.from_bytes(b[:8], 'little')\n"
-                   "h = json.loads(b[8:8+n])\n"
-                   "assert n % 8 == 0 and h.pop('__metadata__') == {'format': 'ptie', 'title': 'naïve \"µm\"\\n'}\n"
-                   "e = h['enc1.conv1.weight']\n"
-                   "w = np.frombuffer(b[8+n:], '<f4')[e['data_offsets'][0]//4:e['data_offsets'][1]//4]\n"
-                   "want = np.float32([[1, -2.5, 3e-38], [.1, 1e30, -0.]])\n"
-                   "assert e['dtype'] == 'F32' and (w.reshape(e['shape']) == want).all()\n",
-                   example("numpy.safetensors"));
+    support_python(
+        "import json, sys, numpy as np\n"
+        "b = open(sys.argv[1], 'rb').read()\n"
+        "n = int.from_bytes(b[:8], 'little')\n"
+        "h = json.loads(b[8:8+n])\n"
+        "assert n % 8 == 0 and h.pop('__metadata__') == {'format': 'ptie', 'title': 'naïve "
+        "\"µm\"\\n'}\n"
+        "e = h['enc1.conv1.weight']\n"
+        "w = np.frombuffer(b[8+n:], '<f4')[e['data_offsets'][0]//4:e['data_offsets'][1]//4]\n"
+        "want = np.float32([[1, -2.5, 3e-38], [.1, 1e30, -0.]])\n"
+        "assert e['dtype'] == 'F32' and (w.reshape(e['shape']) == want).all()\n",
+        example("numpy.safetensors"));
 }
 
 static ptie_status read_and_free(const char *path) {
@@ -120,9 +124,12 @@ static void damage_is_named(void **state) {
         {"{\"a\":", 0, PTIE_EFORMAT, "bad header"},
         {"{" T("a", "F32", "[1]", "[0,4]") "," T("a", "F32", "[1]", "[4,8]") "}", 8, PTIE_EFORMAT,
          "duplicate"},
-        {"{" T("a", "F32", "[1]", "[0,4]") "," T("b", "F32", "[1]", "[2,6]") "}", 6, PTIE_EFORMAT, "overlaps"},
-        {"{" T("a", "F32", "[1]", "[0,4]") "," T("b", "F32", "[1]", "[0,4]") "}", 4, PTIE_EFORMAT, "overlaps"},
-        {"{" T("a", "F32", "[1]", "[0,4]") "," T("b", "F32", "[1]", "[8,12]") "}", 12, PTIE_EFORMAT, "hole"},
+        {"{" T("a", "F32", "[1]", "[0,4]") "," T("b", "F32", "[1]", "[2,6]") "}", 6, PTIE_EFORMAT,
+         "overlaps"},
+        {"{" T("a", "F32", "[1]", "[0,4]") "," T("b", "F32", "[1]", "[0,4]") "}", 4, PTIE_EFORMAT,
+         "overlaps"},
+        {"{" T("a", "F32", "[1]", "[0,4]") "," T("b", "F32", "[1]", "[8,12]") "}", 12, PTIE_EFORMAT,
+         "hole"},
         {"{" T("a", "F32", "[1]", "[4,8]") "}", 8, PTIE_EFORMAT, "hole"},
         {"{" T("a", "F32", "[1]", "[0,4]") "}", 8, PTIE_EFORMAT, "no tensor"},
         {"{" T("a", "F32", "[1]", "[0,4]") "}", 3, PTIE_EFORMAT, "outside"},
@@ -131,8 +138,10 @@ static void damage_is_named(void **state) {
         {"{" T("a", "F32", "[1]", "[0]") "}", 4, PTIE_EFORMAT, "data_offsets"},
         {"{" T("a", "F32", "[2]", "[0,4]") "}", 4, PTIE_EFORMAT, "larger than the file"},
         {"{" T("a", "F32", "[1]", "[0,8]") "}", 8, PTIE_EFORMAT, "expected 4 bytes, found 8"},
-        {"{" T("a", "F32", "[4294967296,4294967296,1]", "[0,0]") "}", 0, PTIE_EFORMAT, "larger than the file"},
-        {"{" T("a", "F32", "[9223372036854775807,2,2]", "[0,4]") "}", 4, PTIE_EFORMAT, "larger than"},
+        {"{" T("a", "F32", "[4294967296,4294967296,1]", "[0,0]") "}", 0, PTIE_EFORMAT,
+         "larger than the file"},
+        {"{" T("a", "F32", "[9223372036854775807,2,2]", "[0,4]") "}", 4, PTIE_EFORMAT,
+         "larger than"},
         {"{" T("a", "F32", "[-1]", "[0,4]") "}", 4, PTIE_EFORMAT, "bad shape"},
         {"{" T("a", "F32", "[1,1,1,1,1]", "[0,4]") "}", 4, PTIE_EFORMAT, "bad shape"},
         {"{" T("a", "F32", "[1.5]", "[0,4]") "}", 4, PTIE_EFORMAT, "bad shape"},
@@ -171,9 +180,9 @@ static void header_length_is_checked(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_written_is_read),     cmocka_unit_test(bytes_are_those_of_the_format),
-        cmocka_unit_test(numpy_reads_it),              cmocka_unit_test(every_truncation_is_refused),
-        cmocka_unit_test(a_full_disk_is_reported),     cmocka_unit_test(damage_is_named),
+        cmocka_unit_test(what_is_written_is_read),  cmocka_unit_test(bytes_are_those_of_the_format),
+        cmocka_unit_test(numpy_reads_it),           cmocka_unit_test(every_truncation_is_refused),
+        cmocka_unit_test(a_full_disk_is_reported),  cmocka_unit_test(damage_is_named),
         cmocka_unit_test(header_length_is_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,8 +11,12 @@
 
 enum { T = 3, H = 5, W = 7, PIXELS = H * W };
 
-static const ptie_recording_info info = {
-    .width_px = W, .height_px = H, .frames = T, .unit = "rad", .frame_rate_hz = 25000, .pixel_m = 9.53e-5};
+static const ptie_recording_info info = {.width_px = W,
+                                         .height_px = H,
+                                         .frames = T,
+                                         .unit = "rad",
+                                         .frame_rate_hz = 25000,
+                                         .pixel_m = 9.53e-5};
 
 static float value_at(int64_t t, size_t i) {
     return 0.25f * (float)i - 3 + 100 * (float)t;
@@ -23,7 +27,8 @@ static void fill(float frame[PIXELS], int64_t t) {
 }
 
 /* Announces `announced` frames and writes `frames` of them. */
-static ptie_status write_frames(const char *path, int64_t announced, int64_t frames, bool overwrite) {
+static ptie_status write_frames(const char *path, int64_t announced, int64_t frames,
+                                bool overwrite) {
     ptie_writer *writer;
     ptie_recording_info planned = info;
     float frame[PIXELS];
@@ -67,18 +72,23 @@ static void check_notes(const char *path) {
     assert_ok(ptie_recording_open(&recording, path));
     const ptie_recording_info *found = ptie_recording_get_info(recording);
     assert_string_equal(found->unit, "rad");
-    assert_near(found->pixel_m / info.pixel_m, 1, 1e-7); /* libtiff reads resolutions as float: 2^-24 */
+    assert_near(found->pixel_m / info.pixel_m, 1,
+                1e-7); /* libtiff reads resolutions as float: 2^-24 */
     assert_near(found->frame_rate_hz / info.frame_rate_hz, 1, 1e-8);
     ptie_recording_close(recording);
 }
 
-/* 16 bits keep half a step; the value is then rounded to float: half an ulp of 203 in a range of 8.5. */
+/* 16 bits keep half a step; the value is then rounded to float: half an ulp of 203 in a range
+ * of 8.5. */
 static const double png_slack = 0.5 / 65535 + 0x1p-17 / 8.5;
 
 static void what_is_written_is_read(void **state) {
     (void)state;
-    static const char *const names[][2] = {
-        {"a.npy", "NPY"}, {"a.tif", "TIFF"}, {"b.TIFF", "TIFF"}, {"a.h5", "HDF5"}, {"a.hdf5", "HDF5"}};
+    static const char *const names[][2] = {{"a.npy", "NPY"},
+                                           {"a.tif", "TIFF"},
+                                           {"b.TIFF", "TIFF"},
+                                           {"a.h5", "HDF5"},
+                                           {"a.hdf5", "HDF5"}};
     for (size_t i = 0; i < 5; i++) {
         const char *path = support_temporary(names[i][0]);
         assert_ok(write_frames(path, T, T, false));
@@ -140,7 +150,8 @@ static void the_number_of_frames_is_kept(void **state) {
         const char *file = i == 3 ? support_temporary("d_0.png") : path;
         assert_fails(write_frames(path, T, T - 1, false), PTIE_ESTATE, "expected 3, found 2");
         support_assert_nothing_left(file);
-        assert_fails(write_frames(path, T, T + 1, false), PTIE_ESTATE, "too many frames (expected 3)");
+        assert_fails(write_frames(path, T, T + 1, false), PTIE_ESTATE,
+                     "too many frames (expected 3)");
         support_assert_nothing_left(file);
         assert_fails(write_frames(path, 0, 0, false), PTIE_ESTATE, "expected 1, found 0");
         support_assert_nothing_left(file);
@@ -159,7 +170,8 @@ static void a_png_in_the_way_keeps_all(void **state) {
     (void)state;
     const char *second = support_temporary("way_1.png");
     support_write(second, "mine", 4);
-    assert_fails(write_frames(support_temporary("way_%d.png"), T, T, false), PTIE_EEXIST, "way_1.png");
+    assert_fails(write_frames(support_temporary("way_%d.png"), T, T, false), PTIE_EEXIST,
+                 "way_1.png");
     support_assert_nothing_left(support_temporary("way_0.png"));
     assert_true(support_exists(second));
 }
@@ -182,8 +194,9 @@ static void arguments_are_checked(void **state) {
     assert_fails(ptie_writer_create(NULL, path, "phase", &info, false), PTIE_EINVAL, "out");
     assert_fails(ptie_writer_create(&writer, support_temporary("a.jpg"), "phase", &info, false),
                  PTIE_EUNSUPPORTED, "a.jpg: cannot write this kind of file");
-    assert_fails(ptie_writer_create(&writer, support_temporary("no/such/a.npy"), "phase", &info, false), PTIE_EIO,
-                 "No such file");
+    assert_fails(
+        ptie_writer_create(&writer, support_temporary("no/such/a.npy"), "phase", &info, false),
+        PTIE_EIO, "No such file");
     assert_fails(ptie_writer_append(NULL, NULL), PTIE_EINVAL, "writer");
     assert_fails(ptie_writer_close(NULL), PTIE_EINVAL, "writer");
     assert_fails(ptie_recording_open(&recording, NULL), PTIE_EINVAL, "path");
@@ -203,7 +216,8 @@ static void a_png_holds_finite_values(void **state) {
     fill(frame, 0);
     frame[8] = (float)NAN;
     assert_ok(ptie_writer_create(&writer, path, "phase", &one, false));
-    assert_fails(ptie_writer_append(writer, frame), PTIE_ENUMERIC, "nan.png: value is not finite (at x=1, y=1");
+    assert_fails(ptie_writer_append(writer, frame), PTIE_ENUMERIC,
+                 "nan.png: value is not finite (at x=1, y=1");
     assert_fails(ptie_writer_close(writer), PTIE_EIO, "could not be written");
     support_assert_nothing_left(path);
 }
@@ -215,7 +229,8 @@ static ptie_status write_example(const char *path) {
 static void a_full_disk_is_reported(void **state) {
     (void)state;
     static const char *const names[] = {"full.npy", "full.tif", "full.h5", "full.png"};
-    for (size_t i = 0; i < 4; i++) support_check_full_disk(support_temporary(names[i]), write_example);
+    for (size_t i = 0; i < 4; i++)
+        support_check_full_disk(support_temporary(names[i]), write_example);
 }
 
 /* Makes the ".part" of a path the device that is always full. */
@@ -252,8 +267,10 @@ static const char read_tiff[] =
     "    a, meta, tags, big = f.asarray(), f.imagej_metadata, f.pages[0].tags, f.is_bigtiff\n"
     "    assert len(f.pages) == 3 and (f.pages[1].asarray() == a[1]).all()\n"
     "t, i = np.mgrid[:3, :35]\n"
-    "assert a.shape == (3, 5, 7) and a.dtype == '<f4' and (a.reshape(3, 35) == i / 4 - 3 + 100 * t).all()\n"
-    "assert meta['images'] == meta['frames'] == 3 and meta['unit'] == 'um' and meta['vunit'] == 'rad'\n"
+    "assert a.shape == (3, 5, 7) and a.dtype == '<f4' and (a.reshape(3, 35) == i / 4 - 3 + 100 * "
+    "t).all()\n"
+    "assert meta['images'] == meta['frames'] == 3 and meta['unit'] == 'um' and meta['vunit'] == "
+    "'rad'\n"
     "assert abs(meta['finterval'] * 25000 - 1) < 1e-8\n"
     "n, d = tags['XResolution'].value\n"
     "assert abs(d / n / 95.3 - 1) < 1e-7 and tags['ResolutionUnit'].value == 1\n"
@@ -308,22 +325,23 @@ static void h5py_reads_hdf5(void **state) {
     (void)state;
     const char *path = support_temporary("python.h5");
     assert_ok(write_frames(path, 0, T, true));
-    support_python("import h5py, numpy as np, sys\n"
-                   "f = h5py.File(sys.argv[1])\n"
-                   "data = f[f.attrs['default']][f['entry'].attrs['default']]\n"
-                   "assert f['entry'].attrs['NX_class'] == 'NXentry' and data.attrs['NX_class'] == 'NXdata'\n"
-                   "assert list(data.attrs['axes']) == ['time', 'y', 'x']\n"
-                   "phase = data[data.attrs['signal']]\n"
-                   "t, i = np.mgrid[:3, :35]\n"
-                   "assert phase.shape == (3, 5, 7) and phase.dtype == '<f4' and phase.chunks == (1, 5, 7)\n"
-                   "assert (phase[()].reshape(3, 35) == i / 4 - 3 + 100 * t).all()\n"
-                   "assert phase.attrs['units'] == 'rad' and phase.attrs['interpretation'] == 'image'\n"
-                   "assert np.allclose(phase.attrs['element_size_um'], [1, 95.3, 95.3], rtol=1e-12)\n"
-                   "assert np.allclose(data['time'], np.arange(3) / 25000, rtol=1e-15)\n"
-                   "assert np.allclose(data['x'], np.arange(7) * 9.53e-5, rtol=1e-15)\n"
-                   "assert data['y'].shape == (5,) and data['y'].attrs['units'] == 'm'\n"
-                   "assert data['time'].attrs['units'] == 's'\n",
-                   path);
+    support_python(
+        "import h5py, numpy as np, sys\n"
+        "f = h5py.File(sys.argv[1])\n"
+        "data = f[f.attrs['default']][f['entry'].attrs['default']]\n"
+        "assert f['entry'].attrs['NX_class'] == 'NXentry' and data.attrs['NX_class'] == 'NXdata'\n"
+        "assert list(data.attrs['axes']) == ['time', 'y', 'x']\n"
+        "phase = data[data.attrs['signal']]\n"
+        "t, i = np.mgrid[:3, :35]\n"
+        "assert phase.shape == (3, 5, 7) and phase.dtype == '<f4' and phase.chunks == (1, 5, 7)\n"
+        "assert (phase[()].reshape(3, 35) == i / 4 - 3 + 100 * t).all()\n"
+        "assert phase.attrs['units'] == 'rad' and phase.attrs['interpretation'] == 'image'\n"
+        "assert np.allclose(phase.attrs['element_size_um'], [1, 95.3, 95.3], rtol=1e-12)\n"
+        "assert np.allclose(data['time'], np.arange(3) / 25000, rtol=1e-15)\n"
+        "assert np.allclose(data['x'], np.arange(7) * 9.53e-5, rtol=1e-15)\n"
+        "assert data['y'].shape == (5,) and data['y'].attrs['units'] == 'm'\n"
+        "assert data['time'].attrs['units'] == 's'\n",
+        path);
 }
 
 /* Two signals, frames 10, 12, 14 of a recording without scale: what the pipeline writes. */
@@ -341,18 +359,20 @@ static void nexus_holds_several_signals(void **state) {
     for (int64_t t = 0; t < T; t++) {
         fill(frame, t);
         assert_ok(ptie_h5_write(h5, PTIE_NEXUS_DATA "/phase", PTIE_H5_F32, (uint64_t)t, 1, frame));
-        assert_ok(ptie_h5_write(h5, PTIE_NEXUS_DATA "/denoised", PTIE_H5_F32, (uint64_t)t, 1, frame));
+        assert_ok(
+            ptie_h5_write(h5, PTIE_NEXUS_DATA "/denoised", PTIE_H5_F32, (uint64_t)t, 1, frame));
     }
     assert_ok(ptie_h5_close(h5));
     check_frames(path, "HDF5", "f32", T, 0);
-    support_python("import h5py, sys\n"
-                   "data = h5py.File(sys.argv[1])['entry/data']\n"
-                   "assert data.attrs['signal'] == 'phase'\n"
-                   "assert list(data.attrs['auxiliary_signals']) == ['denoised']\n"
-                   "assert data['phase'].attrs['long_name'] == 'Phase of the gas flow'\n"
-                   "assert data['denoised'].attrs['long_name'] == 'denoised'\n"
-                   "assert list(data['time']) == [10, 12, 14] and data['x'].attrs['units'] == 'px'\n",
-                   path);
+    support_python(
+        "import h5py, sys\n"
+        "data = h5py.File(sys.argv[1])['entry/data']\n"
+        "assert data.attrs['signal'] == 'phase'\n"
+        "assert list(data.attrs['auxiliary_signals']) == ['denoised']\n"
+        "assert data['phase'].attrs['long_name'] == 'Phase of the gas flow'\n"
+        "assert data['denoised'].attrs['long_name'] == 'denoised'\n"
+        "assert list(data['time']) == [10, 12, 14] and data['x'].attrs['units'] == 'px'\n",
+        path);
 }
 
 int main(void) {

@@ -10,12 +10,13 @@ typedef ptie_status (*support_file_fn)(const char *path);
 /* Neither `path` nor its ".part" is there. */
 void support_assert_nothing_left(const char *path);
 
-/* `write` succeeds and leaves `path`; then the disk is full after every 64th part of the size: PTIE_EIO with
-   the name of the file, and nothing is left. */
+/* `write` succeeds and leaves `path`; then the disk is full after every 64th part of the size:
+   PTIE_EIO with the name of the file, and nothing is left. */
 void support_check_full_disk(const char *path, support_file_fn write);
 
-/* `read` succeeds on the whole file and fails with PTIE_EFORMAT, PTIE_EIO or PTIE_EUNSUPPORTED and the name
-   of the file on its first 0 .. size-1 bytes; from size-padding on it may succeed as well. */
+/* `read` succeeds on the whole file and fails with PTIE_EFORMAT, PTIE_EIO or PTIE_EUNSUPPORTED and
+   the name of the file on its first 0 .. size-1 bytes; from size-padding on it may succeed as well.
+ */
 void support_check_truncations(const char *path, support_file_fn read, size_t padding);
 
 /* Runs a Python program with `path` as its argument; skips the test where there is no Python. */
