@@ -3,7 +3,10 @@
 #include "support/files.h"
 #include "train/tiny.h"
 
+#include <signal.h>
 #include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "train/dataset.h"
 
@@ -60,21 +63,24 @@ static void splits_are_80_10_10_by_index(void **state) {
     }
 }
 
+static void assert_same_bytes(const char *path, const char *other_path) {
+    size_t bytes, other_bytes;
+    unsigned char *data = support_read(path, &bytes), *other = support_read(other_path, &other_bytes);
+    assert_int_equal(other_bytes, bytes);
+    assert_memory_equal(other, data, bytes);
+    free(other);
+    free(data);
+}
+
 static void bytes_do_not_depend_on_threads(void **state) {
     (void)state;
     const char *path = support_temporary("one.h5");
-    size_t bytes, other_bytes;
     write_dataset(path, 1, COUNT);
-    unsigned char *one = support_read(path, &bytes);
     for (int32_t threads = 2; threads <= 3; threads++) {
         const char *other_path = support_temporary(threads == 2 ? "two.h5" : "three.h5");
         write_dataset(other_path, threads, COUNT);
-        unsigned char *other = support_read(other_path, &other_bytes);
-        assert_int_equal(other_bytes, bytes);
-        assert_memory_equal(other, one, bytes);
-        free(other);
+        assert_same_bytes(other_path, path);
     }
-    free(one);
 }
 
 static void a_file_reads_as_the_preset_draws(void **state) {
@@ -148,6 +154,29 @@ static int stop_after(void *user, uint64_t done, uint64_t total, const char *not
     (void)note;
     assert_true(done <= total);
     return --*(int *)user <= 0;
+}
+
+/* SIGKILL while the file grows: nothing stands under its name, and the next attempt succeeds. */
+static void kill_9_leaves_no_half_file(void **state) {
+    (void)state;
+    const char *path = support_temporary("killed.h5"), *whole = support_temporary("whole.h5");
+    write_dataset(whole, 1, COUNT);
+    for (useconds_t life_us = 500; life_us < 60000; life_us *= 2) {
+        const pid_t child = fork();
+        assert_true(child >= 0);
+        if (child == 0) {
+            write_dataset(path, 1, COUNT);
+            _exit(0);
+        }
+        usleep(life_us);
+        kill(child, SIGKILL);
+        int result;
+        assert_int_equal(waitpid(child, &result, 0), child);
+        if (WIFSIGNALED(result)) assert_false(support_exists(path));
+        remove(path);
+    }
+    write_dataset(path, 1, COUNT);
+    assert_same_bytes(path, whole);
 }
 
 static void cancelling_leaves_no_file(void **state) {
@@ -259,6 +288,7 @@ int main(void) {
         cmocka_unit_test(bytes_do_not_depend_on_threads),
         cmocka_unit_test(a_file_reads_as_the_preset_draws),
         cmocka_unit_test(h5py_reads_the_file),
+        cmocka_unit_test(kill_9_leaves_no_half_file),
         cmocka_unit_test(cancelling_leaves_no_file),
         cmocka_unit_test(a_full_disk_leaves_no_file),
         cmocka_unit_test(an_existing_file_is_kept_unless_overwritten),

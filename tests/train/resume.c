@@ -204,7 +204,7 @@ static void kill_9_at_any_moment_loses_nothing(void **state) {
     int kills = 0;
     while (kills < 12 && !train_and_kill(path, ptie_random_uniform(&random, 0, whole_s / 3)))
         kills++;
-    print_message("killed %d times\n", kills);
+    print_message("# killed %d times\n", kills);
     assert_true(kills > 0);
     if (kills == 12) assert_ok(go_on(path));
     assert_same_run(path, whole);

@@ -28,7 +28,7 @@ static void training_beats_the_noisy_input(void **state) {
 
     ptie_scores noisy, denoised;
     assert_ok(ptie_evaluate(ctx, best, dataset, PTIE_TEST, &params, &noisy, &denoised, silent));
-    print_message("loss %.4f -> %.4f, PSNR %.2f -> %.2f dB\n", noisy.loss, denoised.loss,
+    print_message("# loss %.4f -> %.4f, PSNR %.2f -> %.2f dB\n", noisy.loss, denoised.loss,
                   noisy.psnr_db, denoised.psnr_db);
     assert_int_equal(noisy.samples, 20);
     assert_int_equal(denoised.samples, 20);
