@@ -75,5 +75,7 @@ int denoise_command(int argc, char **argv) {
     int code = parse(&s, argc, argv);
     if (code != GO_ON) return code;
     ptie_status status = denoise(&s);
-    return status == PTIE_OK ? DONE : failed(status);
+    if (status != PTIE_OK) return failed(status);
+    say("%s: denoised phase of %s", s.output, s.input);
+    return DONE;
 }

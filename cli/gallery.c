@@ -46,7 +46,8 @@ int draw_gallery(const char *path, const ptie_flow_params *flow, bool force) {
     size_t pixels = (size_t)flow->width_px * (size_t)flow->height_px;
     size_t maps = 2 * (size_t)ptie_morphology_count();
     int32_t rows = 2 * g.rows_per_family;
-    int code;
+    int code = check_figure(path, force);
+    if (code != GO_ON) return code;
     g.maps = calloc(maps * pixels, sizeof *g.maps);
     g.panels = calloc((size_t)rows * COLUMNS, sizeof *g.panels);
     if (g.maps && g.panels && rows <= MOST_ROWS) {

@@ -3,7 +3,7 @@
 #include "maps_figure.h"
 
 #include <stdio.h>
-#include <stdlib.h>
+#include <string.h>
 
 #include "cli.h"
 
@@ -40,7 +40,7 @@ static ptie_status add_map(maps *m, const char *path, int64_t frame, ptie_panel 
 static ptie_status collect(maps *m, const ptie_run_params *run, int64_t frame, double pixel_m) {
     char path[PATH_BYTES];
     int64_t recorded = run->first + frame * run->step;
-    const char *inside = run->rig->plus;
+    const char *inside = strstr(run->plus, ":/") ? "" : run->rig->plus;
     ptie_panel intensity = {.title = "intensity", .colormap = PTIE_GRAY,
                             .pixel_m = pixel_m / run->rig->binning};
     ptie_panel phase = {.unit = "rad", .colormap = PTIE_DIVERGING, .pixel_m = pixel_m};

@@ -110,8 +110,8 @@ static int simulate(settings *s, int argc, char **argv) {
     progress_end(&progress);
     ptie_ctx_free(ctx);
     if (status != PTIE_OK) return failed(status);
-    say("%s: %lld frames of %d x %d px with their truth; rig in %s", p->output, (long long)p->frames,
-        p->flow.width_px, p->flow.height_px, p->rig);
+    say("%s: %lld frame%s of %d x %d px with the truth; rig in %s", p->output, (long long)p->frames,
+        p->frames > 1 ? "s" : "", p->flow.width_px, p->flow.height_px, p->rig);
     return DONE;
 }
 

@@ -127,8 +127,8 @@ static int conclude(const settings *s) {
     for (size_t i = 1; i < count; i++)
         if (epochs[i].validation.loss < epochs[best].validation.loss) best = i;
     if (count > 0)
-        say("%s: best of %zu epochs is %d: validation loss %.4f, PSNR %.2f dB, MAE %.4f", s->output, count,
-            epochs[best].epoch, epochs[best].validation.loss, epochs[best].validation.psnr_db,
+        say("%s: best epoch %d of %zu: validation loss %.4f, PSNR %.2f dB, MAE %.4f", s->output,
+            epochs[best].epoch, count, epochs[best].validation.loss, epochs[best].validation.psnr_db,
             epochs[best].validation.mae);
     int code = s->figure && count > 0 ? draw_history(s->figure, epochs, count, s->compute.force) : DONE;
     ptie_history_free(epochs);

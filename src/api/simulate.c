@@ -30,8 +30,7 @@ static ptie_status check_outputs(const ptie_simulate_params *p, const char *wher
     PTIE_TRY(ptie_check_pointer(p->output, where, "output"));
     const char *ending = strrchr(p->output, '.');
     if (!ending || (strcmp(ending, ".h5") != 0 && strcmp(ending, ".hdf5") != 0))
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: cannot write this kind of file (expected .h5 or .hdf5)",
-                         p->output);
+        return PTIE_FAIL(PTIE_EINVAL, "%s: cannot write this kind of file (expected .h5 or .hdf5)", p->output);
     if (p->rig && strcmp(p->rig, p->output) == 0)
         return PTIE_FAIL(PTIE_EINVAL, "%s: recording and rig need names of their own", p->output);
     return PTIE_OK;

@@ -80,6 +80,13 @@ static ptie_status resolve(char *path, size_t bytes, const char *rig_path) {
     return PTIE_OK;
 }
 
+/* Planes are data sets inside the recording. */
+static ptie_status check_data_set(const char *name, const char *key, const char *path) {
+    if (!name[0] || name[0] == '/') return PTIE_OK;
+    return PTIE_FAIL(PTIE_EFORMAT, "%s: %s: expected a data set such as /entry/data/%s, found '%s'", path,
+                     key, key, name);
+}
+
 static ptie_status convert(ptie_rig *rig, const rig_file *file, const char *path) {
     double plus_m = file->defocus_plus_m != 0 ? file->defocus_plus_m : file->defocus_m;
     double minus_m = file->defocus_minus_m != 0 ? file->defocus_minus_m : -file->defocus_m;
@@ -89,6 +96,9 @@ static ptie_status convert(ptie_rig *rig, const rig_file *file, const char *path
     if (file->planes != PTIE_PLANES_REFERENCE && minus_m >= plus_m)
         return PTIE_FAIL(PTIE_EINVAL, "%s: defocus_minus must lie below defocus_plus (found %g m and %g m)",
                          path, minus_m, plus_m);
+    PTIE_TRY(check_data_set(file->plus, "plus", path));
+    PTIE_TRY(check_data_set(file->zero, "zero", path));
+    PTIE_TRY(check_data_set(file->minus, "minus", path));
     ptie_rig_defaults(rig);
     rig->wavelength_m = file->wavelength_m;
     rig->pixel_m = file->pixel_m / file->magnification;

@@ -1,0 +1,188 @@
+# The method from end to end, small.
+
+Simulate, train, evaluate, run, denoise, measure
+  $ ptie simulate jet -o jet.h5 --size 64 --frames 4 --noise 2% --seed 3
+  ! jet.h5: 4 frames of 64 x 64 px with the truth; rig in jet.ini
+  $ cat jet.ini
+  ; The rig of a simulated recording.
+  [optics]
+  wavelength = 532 nm
+  pixel = 20 um
+  defocus = 10 mm
+  
+  [planes]
+  layout = pair
+  plus = /entry/data/plus
+  minus = /entry/data/minus
+  
+  [recording]
+  frame_rate = 25 kHz
+  
+  [flow]
+  polarity = positive
+  
+  [solver]
+  boundary = periodic
+  $ ptie train -p $TESTS/small.ini -n 40 -e 2 --widths 4,8 -o m.safetensors --figure curves.png
+  ! unet-4-8: 1,689 trainable parameters
+  ! epoch 1/2 loss * PSNR * dB, validation loss * PSNR * dB (glob)
+  ! epoch 2/2 loss * PSNR * dB, validation loss * PSNR * dB (glob)
+  ! m.safetensors: best epoch 2 of 2: validation loss *, PSNR * dB, MAE * (glob)
+  $ ptie info m.safetensors
+  kind        model
+  name        unet-4-8
+  parameters  1,689 trainable
+  levels      2 (4, 8 channels)
+  inputs      1 channel
+  output      sigmoid
+  trained on  preset small, seed 1, 32 of 40 samples
+  epochs      2
+  seed        0
+  written by  0.1.0
+  $ ptie evaluate m.safetensors -p $TESTS/small.ini -n 40 --data-seed 2 --figure examples.svg
+  4 samples (test)
+  
+             PSNR (dB)      MAE     SSIM     loss
+  noisy *.* 0.* 0.* 0.* (glob)
+  denoised *.* 0.* 0.* 0.* (glob)
+  $ ptie run --rig jet.ini jet.h5 -m m.safetensors -o phase.h5 --truth jet.h5:/entry/truth/phase \
+  >   --figure frame.png --metrics frames.csv
+  4 frames of 64 x 64 px, 20 um each, in * s (* frames/s) (glob)
+  
+  *TIE phase *denoised (glob)
+  MGM (rad/px) * ± * ± * (glob)
+  SBR * ± * ± * (glob)
+  BNS (rad) * ± * ± * (glob)
+  CNR * ± * ± * (glob)
+  RMSE (rad) * ± * ± * (glob)
+  correlation * ± * ± * (glob)
+  $ ptie info phase.h5
+  kind         recording
+  format       HDF5
+  data set     /entry/data/denoised
+  frames       4
+  width        64 px
+  height       64 px
+  sample       f32
+  unit         rad
+  pixel        20 um
+  frame rate   25 kHz
+  first frame  * .. *, mean * (glob)
+  $ wc -l < frames.csv
+  5
+  $ ptie metrics phase.h5 --truth jet.h5:/entry/truth/phase --figure metrics.png
+  4 frames of 64 x 64 px; jet * px, background * px (glob)
+  
+  *TIE phase *denoised (glob)
+  MGM (rad/px) * ± * ± * (glob)
+  SBR * ± * ± * (glob)
+  BNS (rad) * ± * ± * (glob)
+  CNR * ± * ± * (glob)
+  RMSE (rad) * ± * ± * (glob)
+  correlation * ± * ± * (glob)
+  $ ptie denoise phase.h5:/entry/data/phase -m m.safetensors -o denoised.tif --polarity positive
+  ! denoised.tif: denoised phase of phase.h5:/entry/data/phase
+  $ ptie metrics phase.h5:/entry/data/phase denoised.tif
+  4 frames of 64 x 64 px; jet * px, background * px (glob)
+  
+  *phase.h5:/entry/data/phase *denoised.tif (glob)
+  MGM (rad/px) * ± * ± * (glob)
+  SBR * ± * ± * (glob)
+  BNS (rad) * ± * ± * (glob)
+  CNR * ± * ± * (glob)
+  $ ls
+  curves.png
+  denoised.tif
+  examples.svg
+  frame.png
+  frames.csv
+  jet.h5
+  jet.ini
+  m.safetensors
+  m.safetensors.history.csv
+  m.safetensors.history.json
+  m.safetensors.last
+  metrics.png
+  phase.h5
+
+The summary of a run and the metrics agree
+  $ ptie simulate jet -o jet.h5 --size 64 --frames 3
+  ! jet.h5: 3 frames of 64 x 64 px with the truth; rig in jet.ini
+  $ ptie reconstruct --rig jet.ini jet.h5 -o phase.h5 --truth jet.h5:/entry/truth/phase --json > run.json
+  $ ptie metrics phase.h5 --truth jet.h5:/entry/truth/phase --json > metrics.json
+  $ python3 - <<'END'
+  > import json
+  > a, b = (json.load(open(name))["phase"] for name in ("run.json", "metrics.json"))
+  > for key in a:
+  >     for part in a[key]:
+  >         assert abs(a[key][part] - b[key][part]) <= 1e-5 * abs(a[key][part]), (key, part)
+  > print(*a)
+  > END
+  mgm sbr bns cnr rmse_rad correlation
+
+Threads do not change a byte
+  $ ptie dataset -T 1 -p $TESTS/small.ini -n 9 -o d1.h5
+  ! d1.h5: 9 pairs of preset */small.ini, seed 1 (glob)
+  $ ptie dataset -T 2 -p $TESTS/small.ini -n 9 -o d2.h5
+  ! d2.h5: 9 pairs of preset */small.ini, seed 1 (glob)
+  $ cmp d1.h5 d2.h5
+
+A training in two parts is the training in one
+  $ ptie train -p $TESTS/small.ini -n 40 -e 3 --widths 2,2 -o one.safetensors -T 1
+  ! unet-2-2: 261 trainable parameters
+  ! epoch 1/3 loss * PSNR * dB, validation loss * PSNR * dB (glob)
+  ! epoch 2/3 loss * PSNR * dB, validation loss * PSNR * dB (glob)
+  ! epoch 3/3 loss * PSNR * dB, validation loss * PSNR * dB (glob)
+  ! one.safetensors: best epoch 3 of 3: validation loss *, PSNR * dB, MAE * (glob)
+  $ ptie train -p $TESTS/small.ini -n 40 -e 3 --widths 2,2 -o two.safetensors --steps 2
+  ! unet-2-2: 261 trainable parameters
+  ! epoch 1/3 loss * PSNR * dB, validation loss * PSNR * dB (glob)
+  ! epoch 2/3 loss * PSNR * dB, validation loss * PSNR * dB (glob)
+  ! two.safetensors: best epoch 2 of 2: validation loss *, PSNR * dB, MAE * (glob)
+  $ ptie train -p $TESTS/small.ini -n 40 -e 3 --widths 2,2 -o two.safetensors --resume
+  ! unet-2-2: 261 trainable parameters
+  ! epoch 3/3 loss * PSNR * dB, validation loss * PSNR * dB (glob)
+  ! two.safetensors: best epoch 3 of 3: validation loss *, PSNR * dB, MAE * (glob)
+  $ cmp one.safetensors two.safetensors
+
+A data set file and its preset give the same scores
+  $ ptie train -p $TESTS/small.ini -n 20 -e 1 --widths 2,2 -o m.safetensors
+  ! unet-2-2: 261 trainable parameters
+  ! epoch 1/1 loss * PSNR * dB, validation loss * PSNR * dB (glob)
+  ! m.safetensors: best epoch 1 of 1: validation loss *, PSNR * dB, MAE * (glob)
+  $ ptie dataset -p $TESTS/small.ini -n 20 -o d.h5
+  ! d.h5: 20 pairs of preset */small.ini, seed 1 (glob)
+  $ ptie info d.h5
+  kind        data set
+  size        32 x 32 px
+  samples     20
+  train       16
+  validation  2
+  test        2
+  $ ptie evaluate m.safetensors -d d.h5 --split all --json > file.json
+  $ ptie evaluate m.safetensors -p $TESTS/small.ini -n 20 --split all --json > preset.json
+  $ cmp file.json preset.json
+
+A preset prints as a file that reads back
+  $ ptie info paper > mine.ini
+  $ ptie info mine.ini > again.ini
+  $ cmp mine.ini again.ini
+
+Progress for programs is one JSON object per line
+  $ ptie dataset -p $TESTS/small.ini -n 9 -o d.h5 --progress=json 2> lines
+  $ python3 -c 'import json; print([json.loads(l)["done"] for l in open("lines") if l[0] == "{"][-1])'
+  9
+
+The gallery is a figure
+  $ ptie simulate --gallery gallery.svg --size 32
+  $ head -c 5 gallery.svg; tail -n 1 gallery.svg
+  <?xml</svg>
+
+The machine
+  $ ptie info
+  version  0.1.0
+  kernels  * (glob)
+  threads  * (glob)
+  presets  paper, realistic
+  $ ptie info --json | python3 -c 'import json, sys; print(sorted(json.load(sys.stdin)))'
+  ['kernels', 'presets', 'threads', 'version']
