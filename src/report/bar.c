@@ -45,7 +45,7 @@ static double share_of(ptie_limits span, double value) {
    closer than a space. */
 static bool place(label_row *out, cairo_t *cr, const ptie_ticks *ticks, ptie_limits span, const char *unit,
                   double length) {
-    double taken = -INFINITY;
+    double taken = -HUGE_VAL;
     for (int32_t i = 0; i < ticks->count; i++) {
         char number[PTIE_LABEL_BYTES], factor[PTIE_LABEL_BYTES] = "";
         bool last = i == ticks->count - 1;

@@ -70,7 +70,7 @@ static bool shown(const plot *p, const ptie_curve *curve, size_t i) {
 /* Finds the ranges; true when all x are whole numbers (epochs, frames). */
 static bool scan(plot *p) {
     bool whole = true;
-    p->x = p->y = (axis){.low = INFINITY, .high = -INFINITY};
+    p->x = p->y = (axis){.low = HUGE_VAL, .high = -HUGE_VAL};
     p->y.logarithmic = p->axes->log_y;
     for (int32_t c = 0; c < p->axes->count; c++) {
         const ptie_curve *curve = &p->axes->curves[c];

@@ -155,8 +155,8 @@ static void what_cannot_be_read_is_named(void **state) {
         {"none_/%d.png", "", PTIE_EIO, "none_/: cannot read the folder: No such file"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        ptie_recording *recording = (ptie_recording *)&cases; /* must become NULL */
         char path[300];
+        ptie_recording *recording = (void *)path; /* must become NULL */
         snprintf(path, sizeof path, "%s%s", golden_image(cases[i].name), cases[i].inside);
         print_message("# %s%s\n", cases[i].name, cases[i].inside);
         assert_fails(ptie_recording_open(&recording, path), cases[i].status, cases[i].fragment);

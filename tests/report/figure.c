@@ -211,7 +211,7 @@ static void curves_have_gaps_at_missing_values(void **state) {
     assert_ok(ptie_figure_curves(path, &axes, 1, NULL, 90, true));
     picture whole = decode(path);
     int all = find(&whole, ptie_curve_colour(0), &from, &y_mean);
-    for (int i = 0; i < 10; i++) y[i] = i % 2 ? NAN : INFINITY;
+    for (int i = 0; i < 10; i++) y[i] = i % 2 ? (double)NAN : HUGE_VAL;
     y[0] = 1; /* keeps the range */
     axes.log_y = false;
     assert_ok(ptie_figure_curves(path, &axes, 1, NULL, 90, true));
@@ -230,7 +230,7 @@ static void curves_without_a_point_are_drawn(void **state) {
     const char *path = support_temporary("odd.png");
     for (int log_y = 0; log_y < 2; log_y++) {
         axes.log_y = log_y;
-        for (int i = 0; i < 20; i++) y[i] = NAN;
+        for (int i = 0; i < 20; i++) y[i] = (double)NAN;
         assert_ok(ptie_figure_curves(path, &axes, 1, NULL, 60, true));
         for (int i = 0; i < 20; i++) y[i] = -1;
         assert_ok(ptie_figure_curves(path, &axes, 1, NULL, 60, true));
@@ -303,7 +303,7 @@ static void arguments_are_checked(void **state) {
     ptie_panels figure = {.panels = &panel, .rows = 1, .columns = 1};
     const char *path = support_temporary("never.png");
     assert_fails(ptie_figure_panels(path, &figure, true), PTIE_EINVAL, "expected low <= high");
-    panel.low = panel.high = NAN;
+    panel.low = panel.high = (double)NAN;
     assert_fails(ptie_figure_panels(path, &figure, true), PTIE_EINVAL, "expected low <= high");
     panel.low = panel.high = 0, panel.width_px = 0;
     assert_fails(ptie_figure_panels(path, &figure, true), PTIE_EINVAL, "width_px");

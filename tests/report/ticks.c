@@ -50,7 +50,7 @@ static void ticks_of_counts_are_whole(void **state) {
 
 static void empty_ranges_are_opened(void **state) {
     (void)state;
-    double ranges[][2] = {{0, 0}, {5, 5}, {-2e-9, -2e-9}, {1, -1}, {NAN, NAN}, {INFINITY, -INFINITY}};
+    double ranges[][2] = {{0, 0}, {5, 5}, {-2e-9, -2e-9}, {1, -1}, {(double)NAN, (double)NAN}, {HUGE_VAL, -HUGE_VAL}};
     for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++) {
         double low = ranges[r][0], high = ranges[r][1];
         ptie_widen(&low, &high);
@@ -130,7 +130,7 @@ static void colours_are_those_of_the_published_maps(void **state) {
     assert_true(channel(ptie_colour(PTIE_DIVERGING, 0.2), 0) > channel(ptie_colour(PTIE_DIVERGING, 0.2), 16));
     assert_true(channel(ptie_colour(PTIE_DIVERGING, 0.8), 0) < channel(ptie_colour(PTIE_DIVERGING, 0.8), 16));
     assert_int_equal(ptie_colour(PTIE_GRAY, 100 / 255.0), 0x646464);
-    assert_int_equal(ptie_colour(PTIE_GRAY, -INFINITY), 0);
+    assert_int_equal(ptie_colour(PTIE_GRAY, -HUGE_VAL), 0);
     assert_int_equal(ptie_colour(PTIE_GRAY, 7), 0xffffff);
 }
 
