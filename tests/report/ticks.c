@@ -137,7 +137,7 @@ static void colours_are_those_of_the_published_maps(void **state) {
 static void nan_is_no_colour_of_a_map(void **state) {
     (void)state;
     for (int map = PTIE_GRAY; map <= PTIE_DIVERGING; map++) {
-        assert_int_equal(ptie_colour((ptie_colormap)map, NAN), PTIE_NAN_COLOUR);
+        assert_int_equal(ptie_colour((ptie_colormap)map, (double)NAN), PTIE_NAN_COLOUR);
         for (int i = 0; i <= 1000; i++)
             assert_true(distance(ptie_colour((ptie_colormap)map, i / 1000.0), PTIE_NAN_COLOUR) > 30);
     }
