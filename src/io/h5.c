@@ -12,11 +12,16 @@
 #include "io/input.h"
 
 #define REASON_BYTES 160
+/* Chunks that are kept decoded: a prime number far above their count, and memory used only as needed. */
+#define CACHE_SLOTS 12421
+#define CACHE_BYTES ((size_t)64 << 20)
 
 struct ptie_h5 {
     hid_t file;
     char *path;              /* what messages call it */
     ptie_output_file output; /* open while the file is being written */
+    hid_t last;  /* data set read last: stays open, so that its decoded chunks serve the next rows */
+    char *last_path;
     int failure;             /* errno of the first write that failed, kept by the driver */
 };
 
@@ -98,6 +103,7 @@ static hid_t stored_type(ptie_h5_type type) {
  */
 
 static void h5_free(ptie_h5 *h5) {
+    ptie_free(h5->last_path);
     ptie_free(h5->path);
     ptie_free(h5);
 }
@@ -106,7 +112,7 @@ static ptie_status h5_new(ptie_h5 **out, const char *path) {
     *out = NULL;
     ptie_h5 *h5;
     PTIE_TRY(ptie_alloc_status(&h5, 1, sizeof *h5, path));
-    h5->file = H5I_INVALID_HID;
+    h5->file = h5->last = H5I_INVALID_HID;
     h5->path = ptie_strdup(path);
     if (!h5->path) {
         h5_free(h5);
@@ -168,6 +174,7 @@ ptie_status ptie_h5_open(ptie_h5 **out, const char *path) {
 /* Closes the HDF5 side: after this nothing more is written. */
 static ptie_status close_file(ptie_h5 *h5) {
     LOCK_HDF5;
+    close_id(&h5->last);
     return h5->file < 0 ? PTIE_OK : written(h5, H5Fclose(h5->file) >= 0, "write", "the file");
 }
 
@@ -313,13 +320,31 @@ ptie_status ptie_h5_write(ptie_h5 *h5, const char *path, ptie_h5_type type, uint
     return written(h5, result >= 0, "write", path);
 }
 
+/* Opens a data set to read rows from, with room for the chunks that several rows share. */
+static ptie_status open_last(ptie_h5 *h5, const char *path) {
+    if (h5->last_path && strcmp(h5->last_path, path) == 0) return PTIE_OK;
+    char *copy = ptie_strdup(path);
+    if (!copy) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", h5->path);
+    close_id(&h5->last);
+    ptie_free(h5->last_path);
+    h5->last_path = copy;
+    SCOPED_ID access = H5Pcreate(H5P_DATASET_ACCESS);
+    H5Pset_chunk_cache(access, CACHE_SLOTS, CACHE_BYTES, H5D_CHUNK_CACHE_W0_DEFAULT);
+    h5->last = H5Dopen2(h5->file, path, access);
+    if (h5->last >= 0) return PTIE_OK;
+    ptie_status status = h5_failure(h5, PTIE_EFORMAT, "open data set", path);
+    ptie_free(h5->last_path);
+    h5->last_path = NULL;
+    return status;
+}
+
 ptie_status ptie_h5_read(ptie_h5 *h5, const char *path, ptie_h5_type type, uint64_t first,
                          uint64_t count, void *data) {
     LOCK_HDF5;
-    SCOPED_ID set = H5I_INVALID_HID, file_space = H5I_INVALID_HID, memory_space = H5I_INVALID_HID;
-    PTIE_TRY(open_set(h5, path, &set));
-    PTIE_TRY(select_rows(h5, path, set, (rows){first, count}, &file_space, &memory_space));
-    if (H5Dread(set, memory_type(type), memory_space, file_space, H5P_DEFAULT, data) < 0)
+    SCOPED_ID file_space = H5I_INVALID_HID, memory_space = H5I_INVALID_HID;
+    PTIE_TRY(open_last(h5, path));
+    PTIE_TRY(select_rows(h5, path, h5->last, (rows){first, count}, &file_space, &memory_space));
+    if (H5Dread(h5->last, memory_type(type), memory_space, file_space, H5P_DEFAULT, data) < 0)
         return h5_failure(h5, PTIE_EFORMAT, "read", path);
     return PTIE_OK;
 }
