@@ -12,7 +12,8 @@
 #include "io/input.h"
 
 #define REASON_BYTES 160
-/* Chunks that are kept decoded: a prime number far above their count, and memory used only as needed. */
+/* Chunks that are kept decoded: a prime number far above their count, and memory used only as
+ * needed. */
 #define CACHE_SLOTS 12421
 #define CACHE_BYTES ((size_t)64 << 20)
 
@@ -20,9 +21,9 @@ struct ptie_h5 {
     hid_t file;
     char *path;              /* what messages call it */
     ptie_output_file output; /* open while the file is being written */
-    hid_t last;  /* data set read last: stays open, so that its decoded chunks serve the next rows */
+    hid_t last; /* data set read last: stays open, so that its decoded chunks serve the next rows */
     char *last_path;
-    int failure;             /* errno of the first write that failed, kept by the driver */
+    int failure; /* errno of the first write that failed, kept by the driver */
 };
 
 static pthread_mutex_t hdf5_mutex = PTHREAD_MUTEX_INITIALIZER;

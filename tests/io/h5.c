@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "base/pool.h"
 #include "io/h5.h"
 #include "support/files.h"
 
@@ -103,6 +104,36 @@ static void the_same_content_is_the_same_bytes(void **state) {
     free(second);
 }
 
+/* Each task writes, reads and checks a file of its own. */
+static ptie_status use_own_file(void *context, size_t index, int32_t worker) {
+    char path[1100];
+    uint32_t rows[64] = {0};
+    ptie_h5 *h5;
+    (void)worker;
+    snprintf(path, sizeof path, "%s%zu.h5", (const char *)context, index);
+    PTIE_TRY(ptie_h5_create(&h5, path, false));
+    PTIE_TRY(ptie_h5_dataset(h5, "/rows", PTIE_H5_U32, 1, (uint64_t[]){64}, 8));
+    for (uint32_t i = 0; i < 64; i++)
+        PTIE_TRY(ptie_h5_write(h5, "/rows", PTIE_H5_U32, i, 1, &(uint32_t){(uint32_t)index + i}));
+    PTIE_TRY(ptie_h5_close(h5));
+    PTIE_TRY(ptie_h5_open(&h5, path));
+    PTIE_TRY(ptie_h5_read(h5, "/rows", PTIE_H5_U32, 0, 64, rows));
+    for (uint32_t i = 0; i < 64; i++)
+        if (rows[i] != index + i)
+            return ptie_fail(PTIE_ENUMERIC, "%s: row %u is %u", path, i, rows[i]);
+    return ptie_h5_close(h5);
+}
+
+static void any_thread_may_call(void **state) {
+    (void)state;
+    ptie_pool *pool;
+    char path[1024];
+    snprintf(path, sizeof path, "%s", support_temporary("thread"));
+    assert_ok(ptie_pool_create(&pool, 8));
+    assert_ok(ptie_pool_run(pool, 32, use_own_file, path));
+    ptie_pool_free(pool);
+}
+
 static void a_discarded_file_is_gone(void **state) {
     (void)state;
     ptie_h5 *h5;
@@ -184,6 +215,7 @@ int main(void) {
         cmocka_unit_test(what_is_written_is_read),
         cmocka_unit_test(what_is_not_there_is_named),
         cmocka_unit_test(the_same_content_is_the_same_bytes),
+        cmocka_unit_test(any_thread_may_call),
         cmocka_unit_test(a_discarded_file_is_gone),
         cmocka_unit_test(an_existing_file_is_kept),
         cmocka_unit_test(a_full_disk_is_reported),
