@@ -104,8 +104,10 @@ static int parse(settings *s, const char *name, bool with_model, int argc, char 
 }
 
 static void print_summary(const settings *s, const ptie_run_summary *r) {
-    measured columns[] = {{"TIE phase", "phase", r->phase}, {"denoised", "denoised", r->denoised}};
-    int count = s->params.model ? 2 : 1;
+    measured columns[3] = {{"TIE phase", "phase", r->phase}};
+    int count = 1;
+    if (s->params.model) columns[count++] = (measured){"denoised", "denoised", r->denoised};
+    if (s->params.truth) columns[count++] = (measured){"truth", "truth", r->truth};
     double rate = r->seconds > 0 ? (double)r->frames / r->seconds : 0;
     if (s->json) {
         printf("{\n  \"output\": ");

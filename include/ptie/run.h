@@ -64,6 +64,7 @@ typedef struct ptie_run_summary {
     int32_t width_px, height_px; /* of the phase, after binning */
     double pixel_m;
     ptie_run_row phase, denoised;   /* denoised: all NaN without a model */
+    ptie_run_row truth;             /* the true phase by the same measures; all NaN without truth */
     double seconds;
 } ptie_run_summary;
 

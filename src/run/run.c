@@ -31,7 +31,7 @@ typedef struct run {
     float *true_phase, *true_raw;                  /* (block, H, W); one frame as recorded */
     double *mean;                                  /* (H, W): sum of the best map over frames */
     uint8_t *labels;                               /* (H, W) */
-    double *phase_metrics, *denoised_metrics;      /* (frames, PTIE_RUN_METRICS) */
+    double *phase_metrics, *denoised_metrics, *truth_metrics; /* (frames, PTIE_RUN_METRICS) */
     int64_t done; /* frames of the current block's first */
 } run;
 
@@ -85,7 +85,10 @@ static ptie_status allocate(run *r) {
     PTIE_TRY(ptie_alloc_status(&r->phase, block, sizeof(float), "run"));
     if (r->shape.has_zero) PTIE_TRY(ptie_alloc_status(&r->zero, block, sizeof(float), "run"));
     if (r->shape.has_minus) PTIE_TRY(ptie_alloc_status(&r->minus, block, sizeof(float), "run"));
-    if (r->truth) PTIE_TRY(ptie_alloc_status(&r->true_phase, block, sizeof(float), "run"));
+    if (r->truth) {
+        PTIE_TRY(ptie_alloc_status(&r->true_phase, block, sizeof(float), "run"));
+        PTIE_TRY(ptie_alloc_status(&r->truth_metrics, table, sizeof(double), "run"));
+    }
     if (r->params->model) {
         PTIE_TRY(ptie_alloc_status(&r->denoised, block, sizeof(float), "run"));
         PTIE_TRY(ptie_alloc_status(&r->denoised_metrics, table, sizeof(double), "run"));
@@ -166,11 +169,13 @@ static ptie_status measure_task(void *context, size_t i, int32_t worker) {
     run *r = context;
     size_t row = ((size_t)r->done + i) * PTIE_RUN_METRICS;
     const float *truth = frame_of(r->true_phase, r, i);
-    PTIE_TRY(ptie_run_measure(r->phase_metrics + row, frame_of(r->phase, r, i), truth, r->labels,
-                              r->shape.width_px, r->shape.height_px));
+    const int32_t width = r->shape.width_px, height = r->shape.height_px;
+    PTIE_TRY(ptie_run_measure(r->phase_metrics + row, frame_of(r->phase, r, i), truth, r->labels, width, height));
+    if (truth)
+        PTIE_TRY(ptie_run_measure(r->truth_metrics + row, truth, NULL, r->labels, width, height));
     if (!r->denoised) return PTIE_OK;
-    return ptie_run_measure(r->denoised_metrics + row, frame_of(r->denoised, r, i), truth, r->labels,
-                            r->shape.width_px, r->shape.height_px);
+    return ptie_run_measure(r->denoised_metrics + row, frame_of(r->denoised, r, i), truth, r->labels, width,
+                            height);
 }
 
 static ptie_status read_truth(run *r, int64_t first, size_t count) {
@@ -200,12 +205,14 @@ static ptie_status measure_frames(run *r) {
     PTIE_TRY(ptie_output_metrics(r->output, "phase", r->phase_metrics, r->frames));
     if (r->denoised)
         PTIE_TRY(ptie_output_metrics(r->output, "denoised", r->denoised_metrics, r->frames));
+    if (r->truth) PTIE_TRY(ptie_output_metrics(r->output, "truth", r->truth_metrics, r->frames));
     return PTIE_OK;
 }
 
-static ptie_run_row no_row(void) {
+/* values may be NULL: nothing was measured. */
+static ptie_run_row row_of(const double *values, int64_t frames) {
     const ptie_stat none = {(double)NAN, (double)NAN};
-    return (ptie_run_row){none, none, none, none, none, none};
+    return values ? ptie_run_summarise(values, frames) : (ptie_run_row){none, none, none, none, none, none};
 }
 
 static ptie_run_summary summarise(const run *r) {
@@ -214,14 +221,15 @@ static ptie_run_summary summarise(const run *r) {
         .width_px = r->shape.width_px,
         .height_px = r->shape.height_px,
         .pixel_m = r->params->rig->pixel_m * r->params->rig->binning,
-        .phase = ptie_run_summarise(r->phase_metrics, r->frames),
-        .denoised = r->denoised ? ptie_run_summarise(r->denoised_metrics, r->frames) : no_row(),
+        .phase = row_of(r->phase_metrics, r->frames),
+        .denoised = row_of(r->denoised_metrics, r->frames),
+        .truth = row_of(r->truth_metrics, r->frames),
     };
 }
 
 static void release(run *r) {
     void *const blocks[] = {r->plus, r->zero, r->minus, r->phase, r->denoised, r->true_phase, r->true_raw,
-                            r->mean, r->labels, r->phase_metrics, r->denoised_metrics};
+                            r->mean, r->labels, r->phase_metrics, r->denoised_metrics, r->truth_metrics};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) ptie_free(blocks[i]);
     ptie_h5_discard(r->output);
     ptie_output_discard(&r->csv);
