@@ -158,10 +158,8 @@ static ptie_status open_file(ptie_h5 *h5) {
 
 ptie_status ptie_h5_open(ptie_h5 **out, const char *path) {
     ptie_h5 *h5;
-    unsigned char head[1];
     *out = NULL;
-    PTIE_TRY(ptie_input_head(path, head, sizeof head,
-                             NULL)); /* the system's reason for a missing file */
+    PTIE_TRY(ptie_input_check(path, NULL)); /* the system's reason for a missing file */
     PTIE_TRY(h5_new(&h5, path));
     ptie_status status = open_file(h5);
     if (status != PTIE_OK) {

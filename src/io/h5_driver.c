@@ -155,8 +155,8 @@ static const H5FD_class_t driver_class = {
 };
 
 herr_t ptie_h5_use_driver(hid_t access, int *failure) {
-    /* Registered once and never given back: HDF5 1.10 calls through the class after the file that held its
-       last reference is closed.  Under the lock of h5.c, like every HDF5 call. */
+    /* Registered once and never given back: HDF5 1.10 calls through the class after the file that
+       held its last reference is closed.  Under the lock of h5.c, like every HDF5 call. */
     static hid_t driver = H5I_INVALID_HID;
     if (H5Iget_type(driver) != H5I_VFL) driver = H5FDregister(&driver_class);
     return driver < 0 ? -1 : H5Pset_driver(access, driver, &(settings){failure});

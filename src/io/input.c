@@ -22,10 +22,16 @@ ptie_status ptie_input_open(FILE **out, const char *path, uint64_t *bytes) {
     return PTIE_OK;
 }
 
-ptie_status ptie_input_head(const char *path, unsigned char *head, size_t capacity,
-                            uint64_t *bytes) {
+ptie_status ptie_input_check(const char *path, uint64_t *bytes) {
     FILE *stream;
     PTIE_TRY(ptie_input_open(&stream, path, bytes));
+    fclose(stream);
+    return PTIE_OK;
+}
+
+ptie_status ptie_input_head(const char *path, unsigned char *head, size_t capacity) {
+    FILE *stream;
+    PTIE_TRY(ptie_input_open(&stream, path, NULL));
     memset(head, 0, capacity);
     size_t found = fread(head, 1, capacity, stream);
     ptie_status status = found < capacity && ferror(stream) ? refuse(path, errno) : PTIE_OK;

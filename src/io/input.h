@@ -11,8 +11,10 @@
  * directory. */
 ptie_status ptie_input_open(FILE **out, const char *path, uint64_t *bytes);
 
+/* The same without keeping it open, for libraries that open by name. */
+ptie_status ptie_input_check(const char *path, uint64_t *bytes);
+
 /* The first `capacity` bytes of a file, the rest of `head` zeroed when it is shorter. */
-ptie_status ptie_input_head(const char *path, unsigned char *head, size_t capacity,
-                            uint64_t *bytes);
+ptie_status ptie_input_head(const char *path, unsigned char *head, size_t capacity);
 
 #endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* TIFF and BigTIFF: every page is a frame; strips or tiles, 8 to 64 bits, integer or float. */
-#include <stdlib.h>
 #include <string.h>
 #include <tiffio.h>
 
@@ -145,8 +144,7 @@ static ptie_status add_page(tiff_stack *stack) {
     return PTIE_OK;
 }
 
-/* Is the link that ends the current directory in the file?  libtiff takes a missing one for "no
- * more". */
+/* Is the link that ends the current directory in the file?  To libtiff a missing one is the last. */
 static bool has_link(const tiff_stack *stack) {
     TIFF *tiff = stack->tiff;
     const bool big = TIFFIsBigTIFF(tiff);
@@ -236,25 +234,22 @@ static ptie_status go_to_page(tiff_stack *stack, int64_t page) {
     return TIFFSetSubDirectory(stack->tiff, stack->pages[page]) ? PTIE_OK : damaged(stack, page);
 }
 
-static ptie_status tiff_load(tiff_stack *stack, ptie_recording_info *info, const char *path) {
-    FILE *stream;
-    stack->path = ptie_strdup(path);
+/* Opens quietly, and without a memory map ("m"): a file that shrinks is an error, not a SIGBUS. */
+static ptie_status open_tiff(tiff_stack *stack) {
     TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
-    if (!stack->path || !options) {
-        TIFFOpenOptionsFree(options);
-        return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
-    }
+    if (!options) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", stack->path);
     TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, stack);
     TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, stack);
-    ptie_status status = ptie_input_open(&stream, path, &stack->file_bytes);
-    if (status == PTIE_OK) {
-        fclose(stream);
-        stack->tiff =
-            TIFFOpenExt(path, "rm", options); /* m: no memory map, a shrinking file is no SIGBUS */
-    }
+    stack->tiff = TIFFOpenExt(stack->path, "rm", options);
     TIFFOpenOptionsFree(options);
-    PTIE_TRY(status);
-    if (!stack->tiff) return damaged(stack, 0);
+    return stack->tiff ? PTIE_OK : damaged(stack, 0);
+}
+
+static ptie_status tiff_load(tiff_stack *stack, ptie_recording_info *info, const char *path) {
+    stack->path = ptie_strdup(path);
+    if (!stack->path) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
+    PTIE_TRY(ptie_input_check(path, &stack->file_bytes));
+    PTIE_TRY(open_tiff(stack));
     PTIE_TRY(list_pages(stack, info));
     PTIE_TRY(go_to_page(stack, 0));
     return take_description(stack, info);

@@ -61,7 +61,7 @@ static ptie_status find_reader(const ptie_reader **out, const char *path, const 
         *out = &ptie_read_sequence;
         return PTIE_OK;
     }
-    PTIE_TRY(ptie_input_head(path, head, sizeof head, NULL));
+    PTIE_TRY(ptie_input_head(path, head, sizeof head));
     for (size_t i = 0; i < sizeof readers / sizeof *readers; i++) {
         if (!readers[i]->probe(head)) continue;
         if (*inside && !readers[i]->has_data_sets)
