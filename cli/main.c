@@ -68,15 +68,16 @@ ptie_status open_context(ptie_ctx **ctx, const compute_options *c) {
 }
 
 char *joined_command(int argc, char **argv) {
-    size_t bytes = sizeof "ptie";
-    for (int i = 0; i < argc; i++) bytes += strlen(argv[i]) + sizeof " ''";
-    char *line = malloc(bytes), *end = line;
-    if (!line) return NULL;
-    end += sprintf(end, "ptie");
+    char *line = NULL;
+    size_t bytes;
+    FILE *out = open_memstream(&line, &bytes);
+    if (!out) return NULL;
+    fputs("ptie", out);
     for (int i = 0; i < argc; i++) {
         const char *quote = argv[i][0] && !strpbrk(argv[i], " \t\n'\"\\$&|;<>()*?[]#~") ? "" : "'";
-        end += sprintf(end, " %s%s%s", quote, argv[i], quote);
+        fprintf(out, " %s%s%s", quote, argv[i], quote);
     }
+    fclose(out);
     return line;
 }
 

@@ -268,9 +268,12 @@ static void failures_leave_no_file(void **state) {
     assert_nothing_left(path);
     assert_fails(ptie_figure_panels(support_temporary("no/such/folder.svg"), &figure, true), PTIE_EIO,
                  "No such file");
-    panel.title = "\xff\xfe";
+    const char *wrong[] = {"\xff", "\xc3", "\xe2\x82", "a\x80", "\xf0\x90\x80z"};
     path = support_temporary("title.png");
-    assert_fails(ptie_figure_panels(path, &figure, true), PTIE_EINVAL, "UTF-8");
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        panel.title = wrong[i];
+        assert_fails(ptie_figure_panels(path, &figure, true), PTIE_EINVAL, "title is not UTF-8");
+    }
     assert_false(support_exists(path));
     assert_nothing_left(path);
 }
