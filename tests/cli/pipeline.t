@@ -49,13 +49,13 @@ Simulate, train, evaluate, run, denoise, measure
   >   --figure frame.png --metrics frames.csv
   4 frames of 64 x 64 px, 20 um each, in * s (* frames/s) (glob)
   
-  *TIE phase *denoised (glob)
-  MGM (rad/px) * ± * ± * (glob)
-  SBR * ± * ± * (glob)
-  BNS (rad) * ± * ± * (glob)
-  CNR * ± * ± * (glob)
-  RMSE (rad) * ± * ± * (glob)
-  correlation * ± * ± * (glob)
+  *TIE phase *denoised *truth (glob)
+  MGM (rad/px) * ± * ± * ± * (glob)
+  SBR * ± * ± * ± * (glob)
+  BNS (rad) * ± * ± * ± * (glob)
+  CNR * ± * ± * ± * (glob)
+  RMSE (rad) * ± * ± * - (glob)
+  correlation * ± * ± * - (glob)
   $ ptie info phase.h5
   kind         recording
   format       HDF5
