@@ -54,7 +54,7 @@ static int parse(settings *s, int argc, char **argv) {
                          .synopsis = "PHASE... [options]",
                          .notes = notes,
                          .least = 1,
-                         .most = MOST_SERIES,
+                         .most = MOST_SERIES - 1,
                          .operand = "PHASE",
                          .options = options,
                          .count = COUNT(options)};
@@ -136,6 +136,7 @@ static int draw(const series_set *set, const settings *s) {
                                         .y = set->series[i].value[shown[k]],
                                         .count = (size_t)set->frames,
                                         .label = set->series[i].name,
+                                        .dashed = &set->series[i] == set->truth,
                                         .markers = set->frames <= 40,
                                         .colour = i};
         axes[k] = (ptie_axes){.curves = curves[k], .count = set->count, .title = titles[k],

@@ -32,11 +32,11 @@ static ptie_status open_recordings(series_set *set, const operand_list *files) {
     return status;
 }
 
-static int check_size(const series_set *set, const ptie_recording *recording, const char *path) {
-    const ptie_recording_info *info = ptie_recording_get_info(recording);
+static int check_size(const series_set *set, const series *s) {
+    const ptie_recording_info *info = ptie_recording_get_info(s->recording);
     if (info->width_px == set->width && info->height_px == set->height && info->frames >= set->frames)
         return GO_ON;
-    say("ptie: %s: does not fit %s (expected %lld frames of %d x %d px, found %lld of %d x %d)", path,
+    say("ptie: %s: does not fit %s (expected %lld frames of %d x %d px, found %lld of %d x %d)", s->path,
         set->series[0].path, (long long)set->frames, set->width, set->height, (long long)info->frames,
         info->width_px, info->height_px);
     return FAILED;
@@ -57,7 +57,10 @@ static int allocate(series_set *set) {
 
 int open_series(series_set *set, const operand_list *files, const char *truth) {
     ptie_status status = open_recordings(set, files);
-    if (status == PTIE_OK && truth) status = ptie_recording_open(&set->truth, truth);
+    if (status == PTIE_OK && truth) {
+        status = add_series(set, truth, "", "truth", "truth", true);
+        set->truth = &set->series[set->count - 1];
+    }
     if (status != PTIE_OK) return failed(status);
     const ptie_recording_info *info = ptie_recording_get_info(set->series[0].recording);
     set->frames = info->frames;
@@ -65,9 +68,7 @@ int open_series(series_set *set, const operand_list *files, const char *truth) {
     set->height = info->height_px;
     set->pixels = (size_t)set->width * (size_t)set->height;
     int code = GO_ON;
-    for (int i = 1; i < set->count && code == GO_ON; i++)
-        code = check_size(set, set->series[i].recording, set->series[i].path);
-    if (set->truth && code == GO_ON) code = check_size(set, set->truth, truth);
+    for (int i = 1; i < set->count && code == GO_ON; i++) code = check_size(set, &set->series[i]);
     return code == GO_ON ? allocate(set) : code;
 }
 
@@ -75,8 +76,9 @@ ptie_status label_regions(series_set *set, ptie_rect jet, ptie_rect background) 
     if (jet.width_px > 0)
         return ptie_regions_from_rects(set->labels, set->width, set->height, jet, background);
     float *mean = set->true_map; /* not in use yet */
+    ptie_recording *last = set->series[set->count - (set->truth ? 2 : 1)].recording;
     for (int64_t t = 0; t < set->frames; t++) {
-        ptie_status status = ptie_recording_read(set->series[set->count - 1].recording, t, set->map);
+        ptie_status status = ptie_recording_read(last, t, set->map);
         if (status != PTIE_OK) return status;
         for (size_t i = 0; i < set->pixels; i++) mean[i] += set->map[i] / (float)set->frames;
     }
@@ -90,10 +92,9 @@ static void take_mean_out(float *map, size_t count) {
     for (size_t i = 0; i < count; i++) map[i] -= (float)(mean / (double)count);
 }
 
+/* The map in set->map. */
 static ptie_status compare_with_truth(series_set *set, ptie_comparison *found, int64_t t) {
-    *found = (ptie_comparison){.rmse = (double)NAN, .correlation = (double)NAN};
-    if (!set->truth) return PTIE_OK;
-    ptie_status status = ptie_recording_read(set->truth, t, set->true_map);
+    ptie_status status = ptie_recording_read(set->truth->recording, t, set->true_map);
     if (status != PTIE_OK) return status;
     take_mean_out(set->map, set->pixels);
     take_mean_out(set->true_map, set->pixels);
@@ -102,11 +103,11 @@ static ptie_status compare_with_truth(series_set *set, ptie_comparison *found, i
 
 static ptie_status measure_one(series_set *set, series *s, int64_t t) {
     ptie_flow_metrics flow;
-    ptie_comparison truth;
+    ptie_comparison truth = {.rmse = (double)NAN, .correlation = (double)NAN};
     ptie_status status = ptie_recording_read(s->recording, t, set->map);
     if (status == PTIE_OK)
         status = ptie_flow_measure(&flow, set->map, set->labels, set->width, set->height);
-    if (status == PTIE_OK) status = compare_with_truth(set, &truth, t);
+    if (status == PTIE_OK && set->truth && s != set->truth) status = compare_with_truth(set, &truth, t);
     if (status != PTIE_OK) return status;
     const double found[MEASURES] = {flow.mgm, flow.sbr, flow.bns, flow.cnr, truth.rmse, truth.correlation};
     for (int k = 0; k < MEASURES; k++) s->value[k][t] = found[k];
@@ -140,7 +141,6 @@ void close_series(series_set *set) {
         ptie_recording_close(set->series[i].recording);
         for (int k = 0; k < MEASURES; k++) free(set->series[i].value[k]);
     }
-    ptie_recording_close(set->truth);
     free(set->map);
     free(set->true_map);
     free(set->labels);

@@ -6,7 +6,7 @@
 #include "cli.h"
 #include "measures.h"
 
-enum { MOST_SERIES = 4 };
+enum { MOST_SERIES = 5 }; /* the last place is the truth's */
 
 /* One recording and what was measured of each of its frames. */
 typedef struct series {
@@ -19,7 +19,7 @@ typedef struct series {
 typedef struct series_set {
     series series[MOST_SERIES];
     int count;
-    ptie_recording *truth; /* or NULL */
+    const series *truth; /* the last series, or NULL */
     int64_t frames;
     int32_t width, height;
     size_t pixels;
@@ -27,10 +27,10 @@ typedef struct series_set {
     uint8_t *labels;
 } series_set;
 
-/* Opens the recordings and, unless NULL, the truth; checks that they fit.  A single file that 'ptie run' wrote
+/* Opens the recordings and, unless NULL, the truth, which is measured beside them; checks that they fit.  A single file that 'ptie run' wrote
    gives two series.  GO_ON, or the exit code after a message. */
 int open_series(series_set *set, const operand_list *files, const char *truth);
-/* Labels the regions: the rectangles, or, if `jet` is empty, what the mean of the last series proposes. */
+/* Labels the regions: the rectangles, or, if `jet` is empty, what the mean of the last map proposes. */
 ptie_status label_regions(series_set *set, ptie_rect jet, ptie_rect background);
 /* Measures frame t of every series. */
 ptie_status measure_frame(series_set *set, int64_t t);

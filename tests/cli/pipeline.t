@@ -73,13 +73,13 @@ Simulate, train, evaluate, run, denoise, measure
   $ ptie metrics phase.h5 --truth jet.h5:/entry/truth/phase --figure metrics.png
   4 frames of 64 x 64 px; jet * px, background * px (glob)
   
-  *TIE phase *denoised (glob)
-  MGM (rad/px) * ± * ± * (glob)
-  SBR * ± * ± * (glob)
-  BNS (rad) * ± * ± * (glob)
-  CNR * ± * ± * (glob)
-  RMSE (rad) * ± * ± * (glob)
-  correlation * ± * ± * (glob)
+  *TIE phase *denoised *truth (glob)
+  MGM (rad/px) * ± * ± * ± * (glob)
+  SBR * ± * ± * ± * (glob)
+  BNS (rad) * ± * ± * ± * (glob)
+  CNR * ± * ± * ± * (glob)
+  RMSE (rad) * ± * ± * - (glob)
+  correlation * ± * ± * - (glob)
   $ ptie denoise phase.h5:/entry/data/phase -m m.safetensors -o denoised.tif --polarity positive
   ! denoised.tif: denoised phase of phase.h5:/entry/data/phase
   $ ptie metrics phase.h5:/entry/data/phase denoised.tif
