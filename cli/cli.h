@@ -43,6 +43,7 @@ typedef struct compute_options {
     bool force;
 } compute_options;
 
+/* clang-format off */
 #define COMPUTE_DEFAULTS {.cpu = "auto", .progress = PROGRESS_AUTO}
 #define COMPUTE_OPTIONS(c)                                                                         \
     {'f', "force", OPTION_FLAG, &(c).force, .help = "replace existing output"},                    \
@@ -51,11 +52,12 @@ typedef struct compute_options {
     {0, "cpu", OPTION_TEXT, &(c).cpu, "LEVEL", .help = "auto, scalar, avx2 or avx512"},            \
     {0, "progress", OPTION_CHOICE, &(c).progress, "HOW", .choices = progress_styles,               \
      .help = "on stderr; auto is a bar on a terminal"}
+/* clang-format on */
 
 /* Starts the library. */
 ptie_status open_context(ptie_ctx **ctx, const compute_options *compute);
 
-/* The command line as one string, to keep in output files.  malloc'ed; NULL when memory is short. */
+/* The command line as one string, to keep in output files.  malloc'ed; NULL without memory. */
 char *joined_command(int argc, char **argv);
 
 /* `path` with its ending replaced, "jet.h5" -> "jet.ini"; false when it does not fit. */
@@ -63,8 +65,8 @@ bool replace_ending(char *out, size_t bytes, const char *path, const char *endin
 
 bool ends_in(const char *path, const char *ending); /* upper or lower case */
 
-/* Finds out before long work whether a figure can be written after it.  GO_ON, or the exit code after a
-   message; fine with NULL. */
+/* Finds out before long work whether a figure can be written after it.  GO_ON, or the exit code
+   after a message; fine with NULL. */
 int check_figure(const char *path, bool force);
 
 #endif

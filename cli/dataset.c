@@ -24,17 +24,18 @@ int dataset_command(int argc, char **argv) {
         {'o', "output", OPTION_TEXT, &output, "FILE", .help = "data set to write (.h5)"},
         {'p', "preset", OPTION_TEXT, &preset_name, "NAME",
          .help = "paper, realistic, or an INI file"},
-        {'n', "count", OPTION_INT64, &count, "N", .low = 1, .high = INT32_MAX, .help = "number of pairs"},
+        {'n', "count", OPTION_INT64, &count, "N", .low = 1, .high = INT32_MAX,
+         .help = "number of pairs"},
         {0, "seed", OPTION_SEED, &seed, "N", .help = "which samples of the distribution"},
         COMPUTE_OPTIONS(compute),
     };
     const command_usage usage = {.name = "dataset",
-                         .purpose = "Draws pairs of clean and noisy phase from a preset.",
-                         .examples = examples,
-                         .synopsis = "--preset NAME --count N -o FILE.h5 [options]",
-                         .notes = notes,
-                         .options = options,
-                         .count = COUNT(options)};
+                                 .purpose = "Draws pairs of clean and noisy phase from a preset.",
+                                 .examples = examples,
+                                 .synopsis = "--preset NAME --count N -o FILE.h5 [options]",
+                                 .notes = notes,
+                                 .options = options,
+                                 .count = COUNT(options)};
     operand_list operands;
     int code = parse_options(&usage, argc, argv, &operands);
     if (code != GO_ON) return code;

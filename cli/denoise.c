@@ -23,21 +23,22 @@ typedef struct settings {
 static int parse(settings *s, int argc, char **argv) {
     const option options[] = {
         {'m', "model", OPTION_TEXT, &s->model, "FILE", .help = "denoising network (.safetensors)"},
-        {'o', "output", OPTION_TEXT, &s->output, "FILE", .help = "recording to write (.h5, .tif, .npy, .png)"},
+        {'o', "output", OPTION_TEXT, &s->output, "FILE",
+         .help = "recording to write (.h5, .tif, .npy, .png)"},
         {0, "polarity", OPTION_CHOICE, &s->polarity, "SIGN", .choices = polarities,
          .help = "sign of the flow's phase; auto judges every frame"},
         COMPUTE_OPTIONS(s->compute),
     };
     const command_usage usage = {.name = "denoise",
-                         .purpose = "Denoises a recording of phase, in rad.",
-                         .examples = examples,
-                         .synopsis = "PHASE --model FILE -o FILE [options]",
-                         .notes = notes,
-                         .least = 1,
-                         .most = 1,
-                         .operand = "PHASE",
-                         .options = options,
-                         .count = COUNT(options)};
+                                 .purpose = "Denoises a recording of phase, in rad.",
+                                 .examples = examples,
+                                 .synopsis = "PHASE --model FILE -o FILE [options]",
+                                 .notes = notes,
+                                 .least = 1,
+                                 .most = 1,
+                                 .operand = "PHASE",
+                                 .options = options,
+                                 .count = COUNT(options)};
     operand_list operands;
     int code = parse_options(&usage, argc, argv, &operands);
     if (code != GO_ON) return code;

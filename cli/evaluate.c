@@ -33,7 +33,8 @@ typedef struct settings {
 static int parse(settings *s, int argc, char **argv) {
     const option options[] = {
         SAMPLES_OPTIONS(s->samples),
-        {0, "split", OPTION_CHOICE, &s->split, "NAME", .choices = splits, .help = "part of the data"},
+        {0, "split", OPTION_CHOICE, &s->split, "NAME", .choices = splits,
+         .help = "part of the data"},
         {0, "figure", OPTION_TEXT, &s->figure, "FILE",
          .help = "draw samples: noisy, denoised, clean (.png or .svg)"},
         {0, "samples", OPTION_LIST, &s->shown, "N,N,...",
@@ -41,17 +42,18 @@ static int parse(settings *s, int argc, char **argv) {
         {0, "json", OPTION_FLAG, &s->json, .help = "scores as JSON instead of a table"},
         COMPUTE_OPTIONS(s->compute),
     };
-    const command_usage usage = {.name = "evaluate",
-                         .purpose = "Scores a model on data that it has not seen: the input as it is, "
-                                    "and what the model makes of it.",
-                         .examples = examples,
-                         .synopsis = "MODEL (--data FILE | --preset NAME) [options]",
-                         .notes = notes,
-                         .least = 1,
-                         .most = 1,
-                         .operand = "MODEL",
-                         .options = options,
-                         .count = COUNT(options)};
+    const command_usage usage = {
+        .name = "evaluate",
+        .purpose = "Scores a model on data that it has not seen: the input as it is, "
+                   "and what the model makes of it.",
+        .examples = examples,
+        .synopsis = "MODEL (--data FILE | --preset NAME) [options]",
+        .notes = notes,
+        .least = 1,
+        .most = 1,
+        .operand = "MODEL",
+        .options = options,
+        .count = COUNT(options)};
     operand_list operands;
     int code = parse_options(&usage, argc, argv, &operands);
     if (code != GO_ON) return code;
@@ -101,11 +103,13 @@ static void choose_samples(settings *s, uint64_t count) {
     if (s->shown.count > 0) return;
     s->shown.count = count < 5 ? (int32_t)count : 5;
     for (int32_t i = 0; i < s->shown.count; i++)
-        s->shown.value[i] = (int32_t)((2 * (uint64_t)i + 1) * count / (2 * (uint64_t)s->shown.count));
+        s->shown.value[i] =
+            (int32_t)((2 * (uint64_t)i + 1) * count / (2 * (uint64_t)s->shown.count));
 }
 
 /* maps: noisy, denoised, clean of every shown sample. */
-static ptie_status draw_samples(const settings *s, const ptie_denoiser *denoiser, float *maps, void *scratch) {
+static ptie_status draw_samples(const settings *s, const ptie_denoiser *denoiser, float *maps,
+                                void *scratch) {
     static const char *const rows[] = {"noisy", "denoised", "clean"};
     int32_t columns = s->shown.count, width, height;
     char titles[LONGEST_LIST][32];
@@ -113,7 +117,8 @@ static ptie_status draw_samples(const settings *s, const ptie_denoiser *denoiser
     ptie_dataset_size(s->samples.dataset, &width, &height);
     size_t pixels = (size_t)width * (size_t)height;
     for (int32_t c = 0; c < columns; c++) {
-        float *noisy = maps + 3 * (size_t)c * pixels, *denoised = noisy + pixels, *clean = denoised + pixels;
+        float *noisy = maps + 3 * (size_t)c * pixels, *denoised = noisy + pixels,
+              *clean = denoised + pixels;
         ptie_status status = ptie_dataset_read(s->samples.dataset, (ptie_split)s->split,
                                                (uint64_t)s->shown.value[c], clean, noisy, NULL);
         if (status == PTIE_OK) status = ptie_denoiser_run(denoiser, denoised, noisy, scratch);
@@ -141,8 +146,10 @@ static int draw(settings *s, ptie_ctx *ctx, const ptie_model *model) {
     float *maps = calloc(3 * (size_t)s->shown.count, (size_t)width * (size_t)height * sizeof *maps);
     void *scratch = ptie_scratch_alloc(ptie_denoiser_scratch_bytes(denoiser));
     int code = DONE;
-    if (!maps || !scratch) code = failed(PTIE_ENOMEM);
-    else if ((status = draw_samples(s, denoiser, maps, scratch)) != PTIE_OK) code = failed(status);
+    if (!maps || !scratch)
+        code = failed(PTIE_ENOMEM);
+    else if ((status = draw_samples(s, denoiser, maps, scratch)) != PTIE_OK)
+        code = failed(status);
     ptie_scratch_free(scratch);
     free(maps);
     ptie_denoiser_free(denoiser);
@@ -158,8 +165,8 @@ static int evaluate(settings *s) {
     ptie_status status = ptie_model_load(&model, s->model);
     if (status == PTIE_OK) status = open_context(&ctx, &s->compute);
     if (status == PTIE_OK)
-        status = ptie_evaluate(ctx, model, s->samples.dataset, (ptie_split)s->split, NULL, &noisy, &denoised,
-                               progress_callback(&progress));
+        status = ptie_evaluate(ctx, model, s->samples.dataset, (ptie_split)s->split, NULL, &noisy,
+                               &denoised, progress_callback(&progress));
     progress_end(&progress);
     int code = status == PTIE_OK ? DONE : failed(status);
     if (code == DONE && s->figure) code = draw(s, ctx, model);

@@ -37,8 +37,10 @@ static void print_json(const facts *f) {
         for (char *c = key; *c; c++)
             if (*c == ' ') *c = '_';
         printf("%s\n  \"%s\": ", i ? "," : "{", key);
-        if (f->fact[i].is_number) json_number(stdout, f->fact[i].number);
-        else json_text(stdout, f->fact[i].text);
+        if (f->fact[i].is_number)
+            json_number(stdout, f->fact[i].number);
+        else
+            json_text(stdout, f->fact[i].text);
     }
     printf("\n}\n");
 }
@@ -53,7 +55,8 @@ void print_facts(const facts *f, bool json) {
         int length = (int)strlen(f->fact[i].name);
         if (length > width) width = length;
     }
-    for (int i = 0; i < f->count; i++) printf("%-*s  %s\n", width, f->fact[i].name, f->fact[i].text);
+    for (int i = 0; i < f->count; i++)
+        printf("%-*s  %s\n", width, f->fact[i].name, f->fact[i].text);
 }
 
 const char *with_separators(char text[32], uint64_t number) {

@@ -19,7 +19,8 @@ typedef struct facts {
 
 void add_text(facts *facts, const char *name, const char *format, ...) PTIE_PRINTF(3, 4);
 /* `format` is what people read; programs get the number. */
-void add_number(facts *facts, const char *name, double number, const char *format, ...) PTIE_PRINTF(4, 5);
+void add_number(facts *facts, const char *name, double number, const char *format, ...)
+    PTIE_PRINTF(4, 5);
 void print_facts(const facts *facts, bool json);
 
 /* "29,777" */

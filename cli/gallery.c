@@ -51,7 +51,8 @@ int draw_gallery(const char *path, const ptie_flow_params *flow, bool force) {
     g.maps = calloc(maps * pixels, sizeof *g.maps);
     g.panels = calloc((size_t)rows * COLUMNS, sizeof *g.panels);
     if (g.maps && g.panels && rows <= MOST_ROWS) {
-        ptie_panels figure = {.panels = g.panels, .rows = rows, .columns = COLUMNS, .row_titles = g.row_titles};
+        ptie_panels figure = {
+            .panels = g.panels, .rows = rows, .columns = COLUMNS, .row_titles = g.row_titles};
         ptie_status status = render_family(&g, flow, PTIE_PARAMETRIC);
         if (status == PTIE_OK) status = render_family(&g, flow, PTIE_PHYSICAL);
         if (status == PTIE_OK) status = ptie_figure_panels(path, &figure, force);

@@ -4,7 +4,8 @@
 
 #include <ptie/flow.h>
 
-/* Draws every morphology of both families, with size, optics and seed of `flow`.  Returns an exit code. */
+/* Draws every morphology of both families, with size, optics and seed of `flow`.  Returns an exit
+ * code. */
 int draw_gallery(const char *path, const ptie_flow_params *flow, bool force);
 
 #endif

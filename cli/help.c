@@ -40,10 +40,15 @@ static void default_text(char *text, size_t bytes, const option *o) {
         break;
     case OPTION_INT32: snprintf(text, bytes, "%ld", (long)*(int32_t *)o->value); break;
     case OPTION_INT64: snprintf(text, bytes, "%lld", (long long)*(int64_t *)o->value); break;
-    case OPTION_SEED: snprintf(text, bytes, "%llu", (unsigned long long)*(uint64_t *)o->value); break;
+    case OPTION_SEED:
+        snprintf(text, bytes, "%llu", (unsigned long long)*(uint64_t *)o->value);
+        break;
     case OPTION_QUANTITY:
-        if (*(double *)o->value == 0) snprintf(text, bytes, "0");
-        else snprintf(text, bytes, "%s", ptie_print_quantity(quantity, *(double *)o->value, o->quantity));
+        if (*(double *)o->value == 0)
+            snprintf(text, bytes, "0");
+        else
+            snprintf(text, bytes, "%s",
+                     ptie_print_quantity(quantity, *(double *)o->value, o->quantity));
         break;
     case OPTION_CHOICE: snprintf(text, bytes, "%s", o->choices[*(int *)o->value]); break;
     case OPTION_SIZE: {
@@ -55,7 +60,8 @@ static void default_text(char *text, size_t bytes, const option *o) {
         const number_list *list = o->value;
         size_t used = 0;
         for (int32_t i = 0; i < list->count && used < bytes; i++)
-            used += (size_t)snprintf(text + used, bytes - used, "%s%d", i ? "," : "", list->value[i]);
+            used +=
+                (size_t)snprintf(text + used, bytes - used, "%s%d", i ? "," : "", list->value[i]);
         break;
     }
     case OPTION_FLAG:
@@ -90,7 +96,8 @@ static void print_option(const option *o) {
 
 int print_help(const command_usage *u) {
     print_wrapped(u->purpose, 0, 0);
-    printf("\nExamples:\n%s\nUsage:\n  ptie %s %s\n\nOptions:\n", u->examples, u->name, u->synopsis);
+    printf("\nExamples:\n%s\nUsage:\n  ptie %s %s\n\nOptions:\n", u->examples, u->name,
+           u->synopsis);
     for (size_t i = 0; i < u->count; i++) print_option(&u->options[i]);
     printf("  %-*sthis text\n", INDENT - 2, "-h, --help");
     if (u->notes) printf("\n%s", u->notes);

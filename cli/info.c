@@ -7,11 +7,10 @@
 #include "cli.h"
 #include "facts.h"
 
-static const char examples[] =
-    "  ptie info                            # this machine\n"
-    "  ptie info models/paper.safetensors   # a model\n"
-    "  ptie info jet.h5:/entry/data/plus    # a recording\n"
-    "  ptie info paper > mine.ini           # a preset, to edit\n";
+static const char examples[] = "  ptie info                            # this machine\n"
+                               "  ptie info models/paper.safetensors   # a model\n"
+                               "  ptie info jet.h5:/entry/data/plus    # a recording\n"
+                               "  ptie info paper > mine.ini           # a preset, to edit\n";
 
 /* With the digits that people care about: 25 kHz, not 24.999999999999996 kHz. */
 static void add_quantity(facts *f, const char *name, double value, ptie_quantity quantity) {
@@ -30,7 +29,8 @@ static ptie_status describe_machine(facts *f) {
     add_text(f, "kernels", "%s", ptie_ctx_cpu(ctx));
     add_number(f, "threads", ptie_ctx_threads(ctx), "%d", ptie_ctx_threads(ctx));
     for (int32_t i = 0; ptie_preset_name(i); i++)
-        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", ptie_preset_name(i));
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "",
+                                 ptie_preset_name(i));
     add_text(f, "presets", "%s", names);
     ptie_ctx_free(ctx);
     return PTIE_OK;
@@ -48,13 +48,15 @@ static ptie_status describe_model(facts *f, const char *path) {
     if (status != PTIE_OK) return status;
     const ptie_model_params *p = ptie_model_get_params(model);
     for (int32_t i = 0; i < p->levels; i++)
-        used += (size_t)snprintf(widths + used, sizeof widths - used, "%s%d", i ? ", " : "", p->width[i]);
+        used += (size_t)snprintf(widths + used, sizeof widths - used, "%s%d", i ? ", " : "",
+                                 p->width[i]);
     add_text(f, "kind", "model");
     add_text(f, "name", "%s", ptie_model_name(model));
     add_number(f, "parameters", (double)ptie_model_trainable(model), "%s trainable",
                with_separators(number, ptie_model_trainable(model)));
     add_number(f, "levels", p->levels, "%d (%s channels)", p->levels, widths);
-    add_number(f, "inputs", p->in_channels, "%d channel%s", p->in_channels, p->in_channels > 1 ? "s" : "");
+    add_number(f, "inputs", p->in_channels, "%d channel%s", p->in_channels,
+               p->in_channels > 1 ? "s" : "");
     add_text(f, "output", "%s", p->output == PTIE_SIGMOID ? "sigmoid" : "linear");
     for (size_t i = 0; i < COUNT(notes); i++) {
         const char *text = ptie_model_note(model, notes[i][1]);
@@ -68,7 +70,10 @@ static ptie_status describe_dataset(facts *f, const char *path) {
     static const struct {
         const char *name;
         ptie_split split;
-    } splits[] = {{"samples", PTIE_ALL}, {"train", PTIE_TRAIN}, {"validation", PTIE_VALIDATION}, {"test", PTIE_TEST}};
+    } splits[] = {{"samples", PTIE_ALL},
+                  {"train", PTIE_TRAIN},
+                  {"validation", PTIE_VALIDATION},
+                  {"test", PTIE_TEST}};
     ptie_dataset *dataset;
     int32_t width, height;
     char number[32];
@@ -171,9 +176,12 @@ static ptie_status describe_ini(facts *f, const char *path) {
     ptie_rig rig;
     ptie_rig_init(&rig);
     ptie_status status = ptie_rig_load(&rig, path);
-    if (status == PTIE_OK) describe_rig(f, &rig);
-    else if (print_preset(path) == PTIE_OK) status = PTIE_OK;
-    else status = ptie_rig_load(&rig, path);
+    if (status == PTIE_OK)
+        describe_rig(f, &rig);
+    else if (print_preset(path) == PTIE_OK)
+        status = PTIE_OK;
+    else
+        status = ptie_rig_load(&rig, path);
     return status;
 }
 
@@ -187,14 +195,15 @@ static ptie_status describe_file(facts *f, const char *path) {
 int info_command(int argc, char **argv) {
     bool json = false;
     const option options[] = {{0, "json", OPTION_FLAG, &json, .help = "as JSON"}};
-    const command_usage usage = {.name = "info",
-                         .purpose = "Tells what is in a recording, data set, model, rig file or preset; without "
-                                    "a name, what this machine runs.",
-                         .examples = examples,
-                         .synopsis = "[FILE | PRESET] [--json]",
-                         .most = 1,
-                         .options = options,
-                         .count = COUNT(options)};
+    const command_usage usage = {
+        .name = "info",
+        .purpose = "Tells what is in a recording, data set, model, rig file or preset; without "
+                   "a name, what this machine runs.",
+        .examples = examples,
+        .synopsis = "[FILE | PRESET] [--json]",
+        .most = 1,
+        .options = options,
+        .count = COUNT(options)};
     operand_list operands;
     facts f = {.count = 0};
     int code = parse_options(&usage, argc, argv, &operands);

@@ -4,8 +4,10 @@
 #include <math.h>
 
 void json_number(FILE *out, double value) {
-    if (isfinite(value)) fprintf(out, "%.9g", value);
-    else fprintf(out, "null");
+    if (isfinite(value))
+        fprintf(out, "%.9g", value);
+    else
+        fprintf(out, "null");
 }
 
 void json_text(FILE *out, const char *text) {
@@ -16,9 +18,12 @@ void json_text(FILE *out, const char *text) {
     fputc('"', out);
     for (; *text; text++) {
         unsigned char c = (unsigned char)*text;
-        if (c == '"' || c == '\\') fprintf(out, "\\%c", c);
-        else if (c < 0x20) fprintf(out, "\\u%04x", c);
-        else fputc(c, out);
+        if (c == '"' || c == '\\')
+            fprintf(out, "\\%c", c);
+        else if (c < 0x20)
+            fprintf(out, "\\u%04x", c);
+        else
+            fputc(c, out);
     }
     fputc('"', out);
 }

@@ -42,7 +42,8 @@ void say(const char *format, ...) {
     va_end(arguments);
 }
 
-/* The library's messages may begin with the name of the function that was called, which users never see. */
+/* The library's messages may begin with the name of the function that was called, which users never
+ * see. */
 static const char *without_function(const char *message) {
     size_t name = strspn(message, "abcdefghijklmnopqrstuvwxyz_");
     bool is_function = strncmp(message, "ptie_", 5) == 0 && strncmp(message + name, ": ", 2) == 0;
@@ -83,7 +84,8 @@ char *joined_command(int argc, char **argv) {
 
 bool replace_ending(char *out, size_t bytes, const char *path, const char *ending) {
     const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
-    size_t stem = dot && dot > path && (!slash || dot > slash + 1) ? (size_t)(dot - path) : strlen(path);
+    size_t stem =
+        dot && dot > path && (!slash || dot > slash + 1) ? (size_t)(dot - path) : strlen(path);
     return (size_t)snprintf(out, bytes, "%.*s%s", (int)stem, path, ending) < bytes;
 }
 
@@ -110,11 +112,13 @@ static const command *find_command(const char *name) {
 static int unknown_command(const char *name) {
     const char *names[COUNT(commands) + 1] = {0};
     for (size_t i = 0; i < COUNT(commands); i++) names[i] = commands[i].name;
-    return misused("unknown command '%s' (did you mean '%s'?)", name, ptie_nearest_word(name, names));
+    return misused("unknown command '%s' (did you mean '%s'?)", name,
+                   ptie_nearest_word(name, names));
 }
 
 static int print_overview(void) {
-    printf("ptie " PTIE_VERSION_STRING ": from parallel-TIE recordings to quantitative, denoised phase\n\n"
+    printf("ptie " PTIE_VERSION_STRING
+           ": from parallel-TIE recordings to quantitative, denoised phase\n\n"
            "  ptie run --rig lab.ini recording.h5 --model paper.safetensors -o phase.h5\n\n"
            "Commands:\n");
     for (size_t i = 0; i < COUNT(commands); i++)
@@ -148,7 +152,8 @@ static int dispatch(int argc, char **argv) {
 
 int main(int argc, char **argv) {
     if (strcmp(ptie_version(), PTIE_VERSION_STRING) != 0) {
-        say("ptie: built for library version %s, but running with %s", PTIE_VERSION_STRING, ptie_version());
+        say("ptie: built for library version %s, but running with %s", PTIE_VERSION_STRING,
+            ptie_version());
         return FAILED;
     }
     catch_interrupts();

@@ -15,7 +15,8 @@ typedef struct maps {
     int32_t count;
 } maps;
 
-static ptie_status read_frame(float **data, ptie_recording_info *info, const char *path, int64_t frame) {
+static ptie_status read_frame(float **data, ptie_recording_info *info, const char *path,
+                              int64_t frame) {
     ptie_recording *recording;
     *data = NULL;
     ptie_status status = ptie_recording_open(&recording, path);
@@ -41,8 +42,8 @@ static ptie_status collect(maps *m, const ptie_run_params *run, int64_t frame, d
     char path[PATH_BYTES];
     int64_t recorded = run->first + frame * run->step;
     const char *inside = strstr(run->plus, ":/") ? "" : run->rig->plus;
-    ptie_panel intensity = {.title = "intensity", .colormap = PTIE_GRAY,
-                            .pixel_m = pixel_m / run->rig->binning};
+    ptie_panel intensity = {
+        .title = "intensity", .colormap = PTIE_GRAY, .pixel_m = pixel_m / run->rig->binning};
     ptie_panel phase = {.unit = "rad", .colormap = PTIE_DIVERGING, .pixel_m = pixel_m};
 
     snprintf(path, sizeof path, "%s%s%s", run->plus, inside[0] ? ":" : "", inside);

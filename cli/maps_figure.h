@@ -4,8 +4,8 @@
 
 #include <ptie/run.h>
 
-/* One frame of a finished run side by side: intensity, TIE phase, denoised phase, truth, as far as there
-   are.  `frame` counts the frames of the run. */
+/* One frame of a finished run side by side: intensity, TIE phase, denoised phase, truth, as far as
+   there are.  `frame` counts the frames of the run. */
 ptie_status draw_maps(const char *path, const ptie_run_params *run, int64_t frame, double pixel_m);
 
 #endif

@@ -8,13 +8,14 @@
 #include "table.h"
 
 const char *measure_name(int which) {
-    static const char *const names[MEASURES] = {"MGM (rad/px)", "SBR", "BNS (rad)",
+    static const char *const names[MEASURES] = {"MGM (rad/px)", "SBR",        "BNS (rad)",
                                                 "CNR",          "RMSE (rad)", "correlation"};
     return names[which];
 }
 
 const char *measure_key(int which) {
-    static const char *const keys[MEASURES] = {"mgm", "sbr", "bns", "cnr", "rmse_rad", "correlation"};
+    static const char *const keys[MEASURES] = {"mgm", "sbr",      "bns",
+                                               "cnr", "rmse_rad", "correlation"};
     return keys[which];
 }
 

@@ -38,33 +38,35 @@ static int parse(settings *s, int argc, char **argv) {
     const option options[] = {
         {0, "jet", OPTION_RECT, &s->jet, "x,y,w,h", .help = "region of the flow, pixels"},
         {0, "background", OPTION_RECT, &s->background, "x,y,w,h",
-         .help = "region without flow; if no regions are given, they are proposed from the mean of the "
-                 "last recording"},
+         .help =
+             "region without flow; if no regions are given, they are proposed from the mean of the "
+             "last recording"},
         {0, "truth", OPTION_TEXT, &s->truth, "FILE", .help = "true phase to compare with"},
-        {0, "figure", OPTION_TEXT, &s->figure, "FILE", .help = "draw the metrics over frames (.png or .svg)"},
+        {0, "figure", OPTION_TEXT, &s->figure, "FILE",
+         .help = "draw the metrics over frames (.png or .svg)"},
         {0, "json", OPTION_FLAG, &s->json, .help = "as JSON, with every frame"},
         {'f', "force", OPTION_FLAG, &s->force, .help = "replace existing output"},
         {0, "progress", OPTION_CHOICE, &s->progress, "HOW", .choices = progress_styles,
          .help = "on stderr; auto is a bar on a terminal"},
     };
-    const command_usage usage = {.name = "metrics",
-                         .purpose = "Measures phase maps over frames: mean and standard deviation of MGM, SBR, "
-                                    "BNS and CNR.",
-                         .examples = examples,
-                         .synopsis = "PHASE... [options]",
-                         .notes = notes,
-                         .least = 1,
-                         .most = MOST_SERIES - 1,
-                         .operand = "PHASE",
-                         .options = options,
-                         .count = COUNT(options)};
+    const command_usage usage = {
+        .name = "metrics",
+        .purpose = "Measures phase maps over frames: mean and standard deviation of MGM, SBR, "
+                   "BNS and CNR.",
+        .examples = examples,
+        .synopsis = "PHASE... [options]",
+        .notes = notes,
+        .least = 1,
+        .most = MOST_SERIES - 1,
+        .operand = "PHASE",
+        .options = options,
+        .count = COUNT(options)};
     int code = parse_options(&usage, argc, argv, &s->files);
     if (code != GO_ON) return code;
     if (!s->jet.width_px != !s->background.width_px)
         return misused("metrics: --jet and --background belong together");
     return check_figure(s->figure, s->force);
 }
-
 
 static ptie_status measure(series_set *set, const settings *s) {
     progress_bar progress;
@@ -115,8 +117,8 @@ static void print_results(const series_set *set, bool json) {
         printf("}\n");
         return;
     }
-    printf("%lld frames of %d x %d px; jet %zu px, background %zu px\n\n", (long long)set->frames, set->width,
-           set->height, jet, background);
+    printf("%lld frames of %d x %d px; jet %zu px, background %zu px\n\n", (long long)set->frames,
+           set->width, set->height, jet, background);
     print_measures(columns, set->count);
 }
 
@@ -124,7 +126,8 @@ static void print_results(const series_set *set, bool json) {
 static int draw(const series_set *set, const settings *s) {
     enum { PLOTS = 3 };
     static const int shown[PLOTS] = {MGM, SBR, BNS};
-    static const char *const titles[PLOTS] = {"Mean gradient", "Signal to background", "Background noise"};
+    static const char *const titles[PLOTS] = {"Mean gradient", "Signal to background",
+                                              "Background noise"};
     ptie_curve curves[PLOTS][MOST_SERIES];
     ptie_axes axes[PLOTS];
     double *frame = calloc((size_t)set->frames, sizeof *frame);
@@ -139,8 +142,11 @@ static int draw(const series_set *set, const settings *s) {
                                         .dashed = &set->series[i] == set->truth,
                                         .markers = set->frames <= 40,
                                         .colour = i};
-        axes[k] = (ptie_axes){.curves = curves[k], .count = set->count, .title = titles[k],
-                              .x_label = "frame", .y_label = measure_name(shown[k])};
+        axes[k] = (ptie_axes){.curves = curves[k],
+                              .count = set->count,
+                              .title = titles[k],
+                              .x_label = "frame",
+                              .y_label = measure_name(shown[k])};
     }
     ptie_status status = ptie_figure_curves(s->figure, axes, PLOTS, NULL, 0, s->force);
     free(frame);

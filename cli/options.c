@@ -8,14 +8,16 @@
 #include "cli.h"
 #include "help.h"
 
-static int wrong_value(const command_usage *u, const option *o, const char *expected, const char *text) {
+static int wrong_value(const command_usage *u, const option *o, const char *expected,
+                       const char *text) {
     return misused("%s: --%s: expected %s, found '%s'", u->name, o->name, expected, text);
 }
 
 static bool parse_whole(const char *text, int64_t low, int64_t high, int64_t *value) {
     char *end;
     double approximate = strtod(text, &end); /* catches what strtoll would cut off */
-    if (end == text || *end || approximate < (double)low || approximate > (double)high) return false;
+    if (end == text || *end || approximate < (double)low || approximate > (double)high)
+        return false;
     *value = strtoll(text, &end, 10);
     return *end == 0 && *value >= low && *value <= high;
 }
@@ -28,14 +30,17 @@ static int set_whole(const command_usage *u, const option *o, const char *text, 
                  (long long)high);
         return wrong_value(u, o, expected, text);
     }
-    if (o->kind == OPTION_INT32) *(int32_t *)o->value = (int32_t)value;
-    else *(int64_t *)o->value = value;
+    if (o->kind == OPTION_INT32)
+        *(int32_t *)o->value = (int32_t)value;
+    else
+        *(int64_t *)o->value = value;
     return GO_ON;
 }
 
 static int set_seed(const command_usage *u, const option *o, const char *text) {
     int64_t value;
-    if (!parse_whole(text, 0, INT64_MAX, &value)) return wrong_value(u, o, "a whole number of 0 or more", text);
+    if (!parse_whole(text, 0, INT64_MAX, &value))
+        return wrong_value(u, o, "a whole number of 0 or more", text);
     *(uint64_t *)o->value = (uint64_t)value;
     return GO_ON;
 }
@@ -43,7 +48,8 @@ static int set_seed(const command_usage *u, const option *o, const char *text) {
 static int set_quantity(const command_usage *u, const option *o, const char *text) {
     double *value = o->value;
     const char *wrong = ptie_parse_quantity(text, o->quantity, value);
-    if (wrong && o->quantity == PTIE_RATE && !ptie_parse_quantity(text, PTIE_NUMBER, value)) return GO_ON;
+    if (wrong && o->quantity == PTIE_RATE && !ptie_parse_quantity(text, PTIE_NUMBER, value))
+        return GO_ON;
     return wrong ? wrong_value(u, o, wrong, text) : GO_ON;
 }
 
@@ -57,7 +63,8 @@ static int set_choice(const command_usage *u, const option *o, const char *text)
                    ptie_nearest_word(text, o->choices));
 }
 
-/* Whole numbers of 0 or more, between separators; how many there are, 0 if anything else is in the text. */
+/* Whole numbers of 0 or more, between separators; how many there are, 0 if anything else is in the
+ * text. */
 static int32_t parse_numbers(const char *text, char separator, int32_t *value, int32_t most) {
     for (int32_t n = 0; n < most; n++) {
         char *end;
@@ -146,7 +153,9 @@ static int parse_short(const command_usage *u, int argc, char **argv, int *i) {
         const option *o = NULL;
         for (size_t k = 0; k < u->count && !o; k++)
             if (u->options[k].letter == *letter) o = &u->options[k];
-        if (!o) return misused("%s: unknown option '-%c' (see 'ptie help %s')", u->name, *letter, u->name);
+        if (!o)
+            return misused("%s: unknown option '-%c' (see 'ptie help %s')", u->name, *letter,
+                           u->name);
         if (o->kind == OPTION_FLAG) {
             (void)set_value(u, o, NULL);
             continue;
@@ -164,7 +173,8 @@ static int add_operand(const command_usage *u, operand_list *operands, const cha
         operands->value[operands->count++] = text;
         return GO_ON;
     }
-    return misused("%s: too many arguments (expected at most %d, found '%s')", u->name, u->most, text);
+    return misused("%s: too many arguments (expected at most %d, found '%s')", u->name, u->most,
+                   text);
 }
 
 int parse_options(const command_usage *u, int argc, char **argv, operand_list *operands) {
@@ -173,10 +183,14 @@ int parse_options(const command_usage *u, int argc, char **argv, operand_list *o
     for (int i = 1; i < argc; i++) {
         int code;
         const char *text = argv[i];
-        if (ended || text[0] != '-' || !text[1]) code = add_operand(u, operands, text);
-        else if (strcmp(text, "--") == 0) code = GO_ON, ended = true;
-        else if (text[1] == '-') code = parse_long(u, argc, argv, &i);
-        else code = parse_short(u, argc, argv, &i);
+        if (ended || text[0] != '-' || !text[1])
+            code = add_operand(u, operands, text);
+        else if (strcmp(text, "--") == 0)
+            code = GO_ON, ended = true;
+        else if (text[1] == '-')
+            code = parse_long(u, argc, argv, &i);
+        else
+            code = parse_short(u, argc, argv, &i);
         if (code != GO_ON) return code;
     }
     if (operands->count >= u->least) return GO_ON;

@@ -24,8 +24,10 @@ static void on_signal(int number) {
 
 /* A signal that the parent told us to ignore (nohup, background jobs of scripts) stays ignored. */
 static void catch_signal(int number) {
-    struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND | SA_RESTART}, before;
-    if (sigaction(number, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(number, &action, NULL);
+    struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND | SA_RESTART},
+                     before;
+    if (sigaction(number, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+        sigaction(number, &action, NULL);
 }
 
 void catch_interrupts(void) {
@@ -45,14 +47,17 @@ static double now_s(void) {
 
 void progress_start(progress_bar *p, int style, const char *task, const char *unit) {
     if (style == PROGRESS_AUTO) style = isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_NONE;
-    *p = (progress_bar){.style = (progress_style)style, .task = task, .unit = unit, .start_s = now_s()};
+    *p = (progress_bar){
+        .style = (progress_style)style, .task = task, .unit = unit, .start_s = now_s()};
 }
 
 /* "1:02:03", "2:03". */
 static void clock_text(char text[24], double seconds) {
     long s = lround(fmin(seconds, 1e7));
-    if (s >= 3600) snprintf(text, 24, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
-    else snprintf(text, 24, "%ld:%02ld", s / 60, s % 60);
+    if (s >= 3600)
+        snprintf(text, 24, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
+    else
+        snprintf(text, 24, "%ld:%02ld", s / 60, s % 60);
 }
 
 static int terminal_columns(void) {
@@ -68,23 +73,24 @@ static void show_bar(progress_bar *p, uint64_t done, uint64_t total, double rate
     double share = total ? (double)done / (double)total : 0;
     for (int i = 0; i < cells; i++) bar[i] = i < share * cells ? '#' : '.';
     bar[cells] = 0;
-    snprintf(counts, sizeof counts, "  %llu/%llu %s", (unsigned long long)done, (unsigned long long)total,
-             p->unit);
-    snprintf(line, sizeof line, "%s [%s] %3.0f %%%s  %.3g/s  ETA %s%s%s", p->task, bar, floor(100 * share),
-             note ? "" : counts, rate, eta, note ? "  " : "", note ? note : "");
+    snprintf(counts, sizeof counts, "  %llu/%llu %s", (unsigned long long)done,
+             (unsigned long long)total, p->unit);
+    snprintf(line, sizeof line, "%s [%s] %3.0f %%%s  %.3g/s  ETA %s%s%s", p->task, bar,
+             floor(100 * share), note ? "" : counts, rate, eta, note ? "  " : "", note ? note : "");
     fprintf(stderr, "\r%.*s\033[K", terminal_columns() - 1, line);
     p->on_line = true;
 }
 
-static void show_plain(const progress_bar *p, uint64_t done, uint64_t total, double rate, const char *eta,
-                       const char *note) {
+static void show_plain(const progress_bar *p, uint64_t done, uint64_t total, double rate,
+                       const char *eta, const char *note) {
     fprintf(stderr, "%s: %llu/%llu %s, %.4g/s, ETA %s%s%s\n", p->task, (unsigned long long)done,
             (unsigned long long)total, p->unit, rate, eta, note ? ", " : "", note ? note : "");
 }
 
-static void show_json(const progress_bar *p, uint64_t done, uint64_t total, double rate, double eta_s,
-                      const char *note) {
-    fprintf(stderr, "{\"task\": \"%s\", \"done\": %llu, \"total\": %llu, \"unit\": \"%s\", \"rate\": ",
+static void show_json(const progress_bar *p, uint64_t done, uint64_t total, double rate,
+                      double eta_s, const char *note) {
+    fprintf(stderr,
+            "{\"task\": \"%s\", \"done\": %llu, \"total\": %llu, \"unit\": \"%s\", \"rate\": ",
             p->task, (unsigned long long)done, (unsigned long long)total, p->unit);
     json_number(stderr, rate);
     fprintf(stderr, ", \"eta_s\": ");
@@ -108,9 +114,12 @@ int progress_report(void *user, uint64_t done, uint64_t total, const char *note)
         double eta_s = done > 0 ? (double)(total - done) / rate : (double)NAN;
         char eta[24] = "-:--";
         if (isfinite(eta_s)) clock_text(eta, eta_s);
-        if (p->style == PROGRESS_BAR) show_bar(p, done, total, rate, eta, note);
-        else if (p->style == PROGRESS_PLAIN) show_plain(p, done, total, rate, eta, note);
-        else show_json(p, done, total, rate, eta_s, note);
+        if (p->style == PROGRESS_BAR)
+            show_bar(p, done, total, rate, eta, note);
+        else if (p->style == PROGRESS_PLAIN)
+            show_plain(p, done, total, rate, eta, note);
+        else
+            show_json(p, done, total, rate, eta_s, note);
         p->shown_s = now;
         p->shown_done = done;
     }

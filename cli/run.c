@@ -46,10 +46,12 @@ static int check(settings *s, const char *name, bool with_model) {
     ptie_run_params *p = &s->params;
     if (!p->plus) return misused("%s: missing RECORDING (see 'ptie help %s')", name, name);
     if (!s->rig_path) return misused("%s: missing rig (expected --rig FILE.ini)", name);
-    if (with_model && !s->model_path) return misused("%s: missing model (expected --model FILE.safetensors)", name);
+    if (with_model && !s->model_path)
+        return misused("%s: missing model (expected --model FILE.safetensors)", name);
     if (!p->output) return misused("%s: missing output (expected -o FILE.h5)", name);
     if (!ends_in(p->output, ".h5") && !ends_in(p->output, ".hdf5"))
-        return misused("%s: --output: expected a name ending in .h5 or .hdf5, found '%s'", name, p->output);
+        return misused("%s: --output: expected a name ending in .h5 or .hdf5, found '%s'", name,
+                       p->output);
     if (!p->jet.width_px != !p->background.width_px)
         return misused("%s: --jet and --background belong together", name);
     p->overwrite = s->compute.force;
@@ -60,22 +62,30 @@ static int parse(settings *s, const char *name, bool with_model, int argc, char 
     ptie_run_params *p = &s->params;
     const option options[] = {
         /* Must stay the first: reconstruct leaves it out. */
-        {'m', "model", OPTION_TEXT, &s->model_path, "FILE", .help = "denoising network (.safetensors)"},
+        {'m', "model", OPTION_TEXT, &s->model_path, "FILE",
+         .help = "denoising network (.safetensors)"},
         {'r', "rig", OPTION_TEXT, &s->rig_path, "FILE", .help = "how the set-up is built (.ini)"},
         {'o', "output", OPTION_TEXT, &p->output, "FILE", .help = "result to write (.h5)"},
-        {0, "plus", OPTION_TEXT, &p->plus, "FILE", .help = "planes in files of their own: beyond focus"},
+        {0, "plus", OPTION_TEXT, &p->plus, "FILE",
+         .help = "planes in files of their own: beyond focus"},
         {0, "zero", OPTION_TEXT, &p->zero, "FILE", .help = "in focus"},
         {0, "minus", OPTION_TEXT, &p->minus, "FILE", .help = "before focus"},
-        {0, "reference", OPTION_TEXT, &p->reference, "FILE", .help = "no-flow recording, instead of the rig's"},
+        {0, "reference", OPTION_TEXT, &p->reference, "FILE",
+         .help = "no-flow recording, instead of the rig's"},
         {0, "first", OPTION_INT64, &p->first, "N", .high = INT64_MAX, .help = "first frame"},
-        {'n', "count", OPTION_INT64, &p->count, "N", .high = INT64_MAX, .help = "frames; 0 = to the end"},
-        {0, "step", OPTION_INT64, &p->step, "N", .low = 1, .high = INT64_MAX, .help = "every N-th frame"},
+        {'n', "count", OPTION_INT64, &p->count, "N", .high = INT64_MAX,
+         .help = "frames; 0 = to the end"},
+        {0, "step", OPTION_INT64, &p->step, "N", .low = 1, .high = INT64_MAX,
+         .help = "every N-th frame"},
         {0, "truth", OPTION_TEXT, &p->truth, "FILE", .help = "true phase to compare with"},
-        {0, "jet", OPTION_RECT, &p->jet, "x,y,w,h", .help = "region of the flow, pixels of the phase"},
+        {0, "jet", OPTION_RECT, &p->jet, "x,y,w,h",
+         .help = "region of the flow, pixels of the phase"},
         {0, "background", OPTION_RECT, &p->background, "x,y,w,h",
          .help = "region without flow; if no regions are given, they are proposed from the result"},
-        {0, "metrics", OPTION_TEXT, &p->metrics_csv, "FILE", .help = "metrics of every frame as a table (.csv)"},
-        {0, "figure", OPTION_TEXT, &s->figure, "FILE", .help = "draw a frame: intensity and phase (.png or .svg)"},
+        {0, "metrics", OPTION_TEXT, &p->metrics_csv, "FILE",
+         .help = "metrics of every frame as a table (.csv)"},
+        {0, "figure", OPTION_TEXT, &s->figure, "FILE",
+         .help = "draw a frame: intensity and phase (.png or .svg)"},
         {0, "figure-frame", OPTION_INT64, &s->figure_frame, "N", .low = -1, .high = INT64_MAX,
          .help = "which of the frames processed; -1 = the middle one"},
         {0, "json", OPTION_FLAG, &s->json, .help = "summary as JSON instead of a table"},
@@ -83,13 +93,17 @@ static int parse(settings *s, const char *name, bool with_model, int argc, char 
     };
     const command_usage usage = {
         .name = name,
-        .purpose = with_model ? "Takes a recording to phase in rad and to denoised phase, and measures both."
-                              : "Takes a recording to phase in rad, by the transport-of-intensity equation.",
+        .purpose =
+            with_model
+                ? "Takes a recording to phase in rad and to denoised phase, and measures both."
+                : "Takes a recording to phase in rad, by the transport-of-intensity equation.",
         .examples = with_model ? run_examples : reconstruct_examples,
-        .synopsis = with_model ? "--rig FILE RECORDING --model FILE -o FILE.h5 [options]\n"
-                                 "  ptie run --rig FILE --plus FILE --minus FILE -m FILE -o FILE.h5 [options]"
-                               : "--rig FILE RECORDING -o FILE.h5 [options]\n"
-                                 "  ptie reconstruct --rig FILE --plus FILE --minus FILE -o FILE.h5 [options]",
+        .synopsis =
+            with_model
+                ? "--rig FILE RECORDING --model FILE -o FILE.h5 [options]\n"
+                  "  ptie run --rig FILE --plus FILE --minus FILE -m FILE -o FILE.h5 [options]"
+                : "--rig FILE RECORDING -o FILE.h5 [options]\n"
+                  "  ptie reconstruct --rig FILE --plus FILE --minus FILE -o FILE.h5 [options]",
         .notes = notes,
         .most = 1,
         .options = options + (with_model ? 0 : 1),
@@ -98,7 +112,8 @@ static int parse(settings *s, const char *name, bool with_model, int argc, char 
     int code = parse_options(&usage, argc, argv, &files);
     if (code != GO_ON) return code;
     if (files.count && p->plus)
-        return misused("%s: expected RECORDING or --plus, not both (found '%s')", name, files.value[0]);
+        return misused("%s: expected RECORDING or --plus, not both (found '%s')", name,
+                       files.value[0]);
     if (files.count) p->plus = files.value[0];
     return check(s, name, with_model);
 }
@@ -123,8 +138,9 @@ static void print_summary(const settings *s, const ptie_run_summary *r) {
         return;
     }
     char pixel[PTIE_QUANTITY_BYTES];
-    printf("%lld frames of %d x %d px, %s each, in %.3g s (%.4g frames/s)\n\n", (long long)r->frames,
-           r->width_px, r->height_px, ptie_print_quantity(pixel, r->pixel_m, PTIE_LENGTH), r->seconds, rate);
+    printf("%lld frames of %d x %d px, %s each, in %.3g s (%.4g frames/s)\n\n",
+           (long long)r->frames, r->width_px, r->height_px,
+           ptie_print_quantity(pixel, r->pixel_m, PTIE_LENGTH), r->seconds, rate);
     print_measures(columns, count);
 }
 

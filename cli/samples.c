@@ -3,7 +3,8 @@
 
 int open_samples(samples *s, const char *name) {
     if (!s->data == !s->preset)
-        return misused("%s: expected --data FILE or --preset NAME%s", name, s->data ? ", not both" : "");
+        return misused("%s: expected --data FILE or --preset NAME%s", name,
+                       s->data ? ", not both" : "");
     ptie_status status;
     if (s->data) {
         status = ptie_dataset_open(&s->dataset, s->data);

@@ -13,6 +13,7 @@ typedef struct samples {
     ptie_dataset *dataset;
 } samples;
 
+/* clang-format off */
 #define SAMPLES_DEFAULTS {.count = 25000, .seed = 1}
 #define SAMPLES_OPTIONS(s)                                                                         \
     {'d', "data", OPTION_TEXT, &(s).data, "FILE", .help = "data set file (.h5)"},                  \
@@ -21,6 +22,7 @@ typedef struct samples {
     {'n', "count", OPTION_INT64, &(s).count, "N", .low = 3, .high = INT32_MAX,                     \
      .help = "samples of the preset, all splits together"},                                        \
     {0, "data-seed", OPTION_SEED, &(s).seed, "N", .help = "which samples of the preset"}
+/* clang-format on */
 
 /* GO_ON with an open data set, or the exit code after a message. */
 int open_samples(samples *samples, const char *name);

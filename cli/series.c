@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 /* Adds a recording; without `must`, one that is not there is no failure. */
-static ptie_status add_series(series_set *set, const char *path, const char *inside, const char *name,
-                              const char *key, bool must) {
+static ptie_status add_series(series_set *set, const char *path, const char *inside,
+                              const char *name, const char *key, bool must) {
     series *s = &set->series[set->count];
     snprintf(s->path, sizeof s->path, "%s%s", path, inside);
     ptie_status status = ptie_recording_open(&s->recording, s->path);
@@ -34,11 +34,12 @@ static ptie_status open_recordings(series_set *set, const operand_list *files) {
 
 static int check_size(const series_set *set, const series *s) {
     const ptie_recording_info *info = ptie_recording_get_info(s->recording);
-    if (info->width_px == set->width && info->height_px == set->height && info->frames >= set->frames)
+    if (info->width_px == set->width && info->height_px == set->height &&
+        info->frames >= set->frames)
         return GO_ON;
-    say("ptie: %s: does not fit %s (expected %lld frames of %d x %d px, found %lld of %d x %d)", s->path,
-        set->series[0].path, (long long)set->frames, set->width, set->height, (long long)info->frames,
-        info->width_px, info->height_px);
+    say("ptie: %s: does not fit %s (expected %lld frames of %d x %d px, found %lld of %d x %d)",
+        s->path, set->series[0].path, (long long)set->frames, set->width, set->height,
+        (long long)info->frames, info->width_px, info->height_px);
     return FAILED;
 }
 
@@ -107,9 +108,11 @@ static ptie_status measure_one(series_set *set, series *s, int64_t t) {
     ptie_status status = ptie_recording_read(s->recording, t, set->map);
     if (status == PTIE_OK)
         status = ptie_flow_measure(&flow, set->map, set->labels, set->width, set->height);
-    if (status == PTIE_OK && set->truth && s != set->truth) status = compare_with_truth(set, &truth, t);
+    if (status == PTIE_OK && set->truth && s != set->truth)
+        status = compare_with_truth(set, &truth, t);
     if (status != PTIE_OK) return status;
-    const double found[MEASURES] = {flow.mgm, flow.sbr, flow.bns, flow.cnr, truth.rmse, truth.correlation};
+    const double found[MEASURES] = {flow.mgm, flow.sbr,   flow.bns,
+                                    flow.cnr, truth.rmse, truth.correlation};
     for (int k = 0; k < MEASURES; k++) s->value[k][t] = found[k];
     return PTIE_OK;
 }

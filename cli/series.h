@@ -27,10 +27,12 @@ typedef struct series_set {
     uint8_t *labels;
 } series_set;
 
-/* Opens the recordings and, unless NULL, the truth, which is measured beside them; checks that they fit.  A single file that 'ptie run' wrote
-   gives two series.  GO_ON, or the exit code after a message. */
+/* Opens the recordings and, unless NULL, the truth, which is measured beside them; checks that they
+   fit.  A single file that 'ptie run' wrote gives two series.  GO_ON, or the exit code after a
+   message. */
 int open_series(series_set *set, const operand_list *files, const char *truth);
-/* Labels the regions: the rectangles, or, if `jet` is empty, what the mean of the last map proposes. */
+/* Labels the regions: the rectangles, or, if `jet` is empty, what the mean of the last map
+ * proposes. */
 ptie_status label_regions(series_set *set, ptie_rect jet, ptie_rect background);
 /* Measures frame t of every series. */
 ptie_status measure_frame(series_set *set, int64_t t);

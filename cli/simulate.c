@@ -38,7 +38,8 @@ typedef struct settings {
 
 static int parse(settings *s, int argc, char **argv) {
     ptie_simulate_params *p = &s->params;
-    int family = (int)p->flow.family, boundary = (int)p->boundary, propagation = (int)p->propagation;
+    int family = (int)p->flow.family, boundary = (int)p->boundary,
+        propagation = (int)p->propagation;
     const option options[] = {
         {'o', "output", OPTION_TEXT, &p->output, "FILE", .help = "recording to write (.h5)"},
         {0, "rig-out", OPTION_TEXT, &p->rig, "FILE",
@@ -52,9 +53,11 @@ static int parse(settings *s, int argc, char **argv) {
         {0, "size", OPTION_SIZE, &s->size, "N or WxH", .help = "frame size in pixels"},
         {0, "noise", OPTION_QUANTITY, &p->noise, "SHARE", .quantity = PTIE_NUMBER,
          .help = "standard deviation of the camera noise, relative to the mean intensity"},
-        {0, "family", OPTION_CHOICE, &family, "NAME", .choices = families, .help = "kind of flow model"},
+        {0, "family", OPTION_CHOICE, &family, "NAME", .choices = families,
+         .help = "kind of flow model"},
         {0, "amplitude", OPTION_QUANTITY, &p->amplitude_rad, "ANGLE", .quantity = PTIE_ANGLE,
-         .help = "height of the phase; 0: 1 rad for parametric flows, what the model says for physical ones"},
+         .help = "height of the phase; 0: 1 rad for parametric flows, what the model says for "
+                 "physical ones"},
         {0, "seed", OPTION_SEED, &p->flow.seed, "N", .help = "which flow, and which noise"},
         {0, "index", OPTION_SEED, &p->flow.index, "N", .help = "which flow of the seed"},
         {0, "wavelength", OPTION_QUANTITY, &p->flow.wavelength_m, "LENGTH", .quantity = PTIE_LENGTH,
@@ -69,14 +72,15 @@ static int parse(settings *s, int argc, char **argv) {
          .help = "what lies beyond the frame"},
         COMPUTE_OPTIONS(s->compute),
     };
-    const command_usage usage = {.name = "simulate",
-                         .purpose = "Simulates a camera recording of a moving flow, with its truth.",
-                         .examples = examples,
-                         .synopsis = "MORPHOLOGY -o FILE.h5 [options]\n  ptie simulate --gallery FILE.png [options]",
-                         .notes = notes,
-                         .most = 1,
-                         .options = options,
-                         .count = COUNT(options)};
+    const command_usage usage = {
+        .name = "simulate",
+        .purpose = "Simulates a camera recording of a moving flow, with its truth.",
+        .examples = examples,
+        .synopsis = "MORPHOLOGY -o FILE.h5 [options]\n  ptie simulate --gallery FILE.png [options]",
+        .notes = notes,
+        .most = 1,
+        .options = options,
+        .count = COUNT(options)};
     operand_list operands;
     int code = parse_options(&usage, argc, argv, &operands);
     if (code != GO_ON) return code;
@@ -87,8 +91,9 @@ static int parse(settings *s, int argc, char **argv) {
     p->flow.height_px = s->size.height;
     p->flow.morphology = operands.count ? operands.value[0] : NULL;
     p->overwrite = s->compute.force;
-    if (s->gallery && operands.count) return misused("simulate: --gallery draws every morphology (found '%s')",
-                                                     operands.value[0]);
+    if (s->gallery && operands.count)
+        return misused("simulate: --gallery draws every morphology (found '%s')",
+                       operands.value[0]);
     if (s->gallery) return GO_ON;
     if (!operands.count) return misused("simulate: missing MORPHOLOGY (see 'ptie help simulate')");
     if (!p->output) return misused("simulate: missing output (expected -o FILE.h5)");
@@ -120,8 +125,10 @@ int simulate_command(int argc, char **argv) {
     ptie_simulate_params_init(&s.params);
     s.size = (frame_size){s.params.flow.width_px, s.params.flow.height_px};
     int code = parse(&s, argc, argv);
-    if (code == GO_ON && s.gallery) code = draw_gallery(s.gallery, &s.params.flow, s.compute.force);
-    else if (code == GO_ON) code = simulate(&s, argc, argv);
+    if (code == GO_ON && s.gallery)
+        code = draw_gallery(s.gallery, &s.params.flow, s.compute.force);
+    else if (code == GO_ON)
+        code = simulate(&s, argc, argv);
     free(s.provenance);
     return code;
 }

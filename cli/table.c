@@ -33,8 +33,10 @@ void table_print(const table *t) {
         for (int c = 0; c < t->columns; c++) {
             const char *text = t->cell[r][c];
             int space = width[c] - text_width(text);
-            if (c == 0) printf("%s%*s", text, space, "");
-            else printf("   %*s%s", space, "", text);
+            if (c == 0)
+                printf("%s%*s", text, space, "");
+            else
+                printf("   %*s%s", space, "", text);
         }
         putchar('\n');
     }

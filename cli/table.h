@@ -16,7 +16,7 @@ typedef struct table {
 void table_set(table *table, int row, int column, const char *format, ...) PTIE_PRINTF(4, 5);
 void table_print(const table *table);
 
-/* "0.0738 ± 0.0124", with three digits of the larger of the two; "-" if the mean is not a number. */
+/* "0.0738 ± 0.0124", with three digits of the larger of the two; "-" where there is no mean. */
 void stat_text(char text[CELL_BYTES], ptie_stat stat);
 
 #endif

@@ -41,41 +41,50 @@ static int parse(settings *s, int argc, char **argv) {
     const option options[] = {
         {'o', "output", OPTION_TEXT, &s->output, "FILE", .help = "model to write (.safetensors)"},
         SAMPLES_OPTIONS(s->samples),
-        {'e', "epochs", OPTION_INT32, &t->epochs, "N", .low = 1, .high = 100000, .help = "passes over the data"},
-        {'b', "batch", OPTION_INT32, &t->batch, "N", .low = 1, .high = 1024, .help = "samples per step"},
-        {0, "lr", OPTION_QUANTITY, &t->learning_rate, "X", .help = "learning rate, before the schedule"},
+        {'e', "epochs", OPTION_INT32, &t->epochs, "N", .low = 1, .high = 100000,
+         .help = "passes over the data"},
+        {'b', "batch", OPTION_INT32, &t->batch, "N", .low = 1, .high = 1024,
+         .help = "samples per step"},
+        {0, "lr", OPTION_QUANTITY, &t->learning_rate, "X",
+         .help = "learning rate, before the schedule"},
         {0, "warmup", OPTION_QUANTITY, &t->warmup_epochs, "X", .help = "linear warm-up, epochs"},
         {0, "weight-decay", OPTION_QUANTITY, &t->weight_decay, "X", .help = "of AdamW"},
-        {0, "dropout", OPTION_QUANTITY, &m->dropout, "X", .help = "share dropped at the bottleneck"},
+        {0, "dropout", OPTION_QUANTITY, &m->dropout, "X",
+         .help = "share dropped at the bottleneck"},
         {0, "patience", OPTION_INT32, &t->patience, "N", .low = 0, .high = 100000,
          .help = "epochs without a better validation loss before stopping; 0 = never stop"},
         {0, "time-limit", OPTION_QUANTITY, &t->time_limit_s, "TIME", .quantity = PTIE_TIME,
          .help = "stop after so long, such as 30min; 0 = no limit"},
         {0, "steps", OPTION_INT64, &steps, "N", .low = 0, .high = INT64_MAX,
          .help = "stop after so many steps in all; 0 = no limit"},
-        {0, "checkpoint-steps", OPTION_INT32, &t->checkpoint_steps, "N", .low = 0, .high = INT32_MAX,
-         .help = "also write FILE.last every so many steps; 0 = every epoch"},
+        {0, "checkpoint-steps", OPTION_INT32, &t->checkpoint_steps, "N", .low = 0,
+         .high = INT32_MAX, .help = "also write FILE.last every so many steps; 0 = every epoch"},
         {'r', "resume", OPTION_FLAG, &t->resume, .help = "go on from FILE.last"},
-        {0, "from", OPTION_TEXT, &s->start, "MODEL", .help = "start from the weights of another model"},
-        {0, "widths", OPTION_LIST, &s->widths, "N,N,...", .help = "channels per level, 2 to 6 levels"},
-        {0, "activation", OPTION_CHOICE, &output, "NAME", .choices = outputs, .help = "of the output"},
+        {0, "from", OPTION_TEXT, &s->start, "MODEL",
+         .help = "start from the weights of another model"},
+        {0, "widths", OPTION_LIST, &s->widths, "N,N,...",
+         .help = "channels per level, 2 to 6 levels"},
+        {0, "activation", OPTION_CHOICE, &output, "NAME", .choices = outputs,
+         .help = "of the output"},
         {0, "seed", OPTION_SEED, &t->seed, "N", .help = "of weights, order and dropout"},
-        {0, "figure", OPTION_TEXT, &s->figure, "FILE", .help = "draw loss, PSNR and MAE over epochs"},
+        {0, "figure", OPTION_TEXT, &s->figure, "FILE",
+         .help = "draw loss, PSNR and MAE over epochs"},
         COMPUTE_OPTIONS(s->compute),
     };
     const command_usage usage = {.name = "train",
-                         .purpose = "Trains a denoising network.",
-                         .examples = examples,
-                         .synopsis = "(--data FILE | --preset NAME) -o MODEL [options]",
-                         .notes = notes,
-                         .options = options,
-                         .count = COUNT(options)};
+                                 .purpose = "Trains a denoising network.",
+                                 .examples = examples,
+                                 .synopsis = "(--data FILE | --preset NAME) -o MODEL [options]",
+                                 .notes = notes,
+                                 .options = options,
+                                 .count = COUNT(options)};
     operand_list operands;
     int code = parse_options(&usage, argc, argv, &operands);
     if (code != GO_ON) return code;
     if (!s->output) return misused("train: missing output (expected -o FILE.safetensors)");
     if (s->widths.count < 2 || s->widths.count > PTIE_MAX_LEVELS)
-        return misused("train: --widths: expected 2 to %d levels, found %d", PTIE_MAX_LEVELS, s->widths.count);
+        return misused("train: --widths: expected 2 to %d levels, found %d", PTIE_MAX_LEVELS,
+                       s->widths.count);
     m->levels = s->widths.count;
     memcpy(m->width, s->widths.value, (size_t)m->levels * sizeof *m->width);
     m->output = (ptie_output)output;
@@ -94,7 +103,9 @@ static int report(void *user, uint64_t done, uint64_t total, const char *note) {
 /* The paper's Fig. 3. */
 static int draw_history(const char *path, const ptie_epoch *epochs, size_t count, bool force) {
     enum { SCORES = 3 };
-    static const char *const names[SCORES] = {"Loss", "PSNR", "MAE"}, *const units[SCORES] = {"loss", "PSNR (dB)", "MAE"};
+    static const char *const names[SCORES] = {"Loss", "PSNR", "MAE"}, *const units[SCORES] = {
+                                                                          "loss", "PSNR (dB)",
+                                                                          "MAE"};
     double *values = calloc(count * (1 + 2 * SCORES) + 1, sizeof *values), *x = values;
     if (!values) return failed(PTIE_ENOMEM);
     ptie_curve curves[SCORES][2];
@@ -108,9 +119,16 @@ static int draw_history(const char *path, const ptie_epoch *epochs, size_t count
             validation[i] = k == 0 ? b->loss : k == 1 ? b->psnr_db : b->mae;
         }
         curves[k][0] = (ptie_curve){.x = x, .y = train, .count = count, .label = "training"};
-        curves[k][1] = (ptie_curve){.x = x, .y = validation, .count = count, .label = "validation",
-                                    .dashed = true, .colour = 1};
-        axes[k] = (ptie_axes){.curves = curves[k], .count = 2, .title = names[k], .x_label = "epoch",
+        curves[k][1] = (ptie_curve){.x = x,
+                                    .y = validation,
+                                    .count = count,
+                                    .label = "validation",
+                                    .dashed = true,
+                                    .colour = 1};
+        axes[k] = (ptie_axes){.curves = curves[k],
+                              .count = 2,
+                              .title = names[k],
+                              .x_label = "epoch",
                               .y_label = units[k]};
     }
     ptie_status status = ptie_figure_curves(path, axes, SCORES, NULL, 0, force);
@@ -128,9 +146,10 @@ static int conclude(const settings *s) {
         if (epochs[i].validation.loss < epochs[best].validation.loss) best = i;
     if (count > 0)
         say("%s: best epoch %d of %zu: validation loss %.4f, PSNR %.2f dB, MAE %.4f", s->output,
-            epochs[best].epoch, count, epochs[best].validation.loss, epochs[best].validation.psnr_db,
-            epochs[best].validation.mae);
-    int code = s->figure && count > 0 ? draw_history(s->figure, epochs, count, s->compute.force) : DONE;
+            epochs[best].epoch, count, epochs[best].validation.loss,
+            epochs[best].validation.psnr_db, epochs[best].validation.mae);
+    int code =
+        s->figure && count > 0 ? draw_history(s->figure, epochs, count, s->compute.force) : DONE;
     ptie_history_free(epochs);
     return code;
 }
@@ -140,7 +159,8 @@ static int train(settings *s) {
     ptie_ctx *ctx = NULL;
     ptie_model *model = NULL;
     char number[32];
-    ptie_status status = s->start ? ptie_model_load(&model, s->start) : ptie_model_create(&model, &s->model);
+    ptie_status status =
+        s->start ? ptie_model_load(&model, s->start) : ptie_model_create(&model, &s->model);
     if (status == PTIE_OK) status = open_context(&ctx, &s->compute);
     if (status == PTIE_OK) {
         progress_start(&progress, s->compute.progress, "train", "samples");
@@ -152,7 +172,8 @@ static int train(settings *s) {
     }
     ptie_ctx_free(ctx);
     ptie_model_free(model);
-    if (status == PTIE_ECANCELLED) say("%s.last holds the last step; --resume goes on from there", s->output);
+    if (status == PTIE_ECANCELLED)
+        say("%s.last holds the last step; --resume goes on from there", s->output);
     return status == PTIE_OK ? conclude(s) : failed(status);
 }
 

@@ -12,8 +12,8 @@
 
 static ptie_status check_width(double width_mm, const char *where) {
     if (width_mm == 0 || (width_mm >= 20 && width_mm <= 2000)) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EINVAL, "%s: width_mm out of range (expected 0 or 20..2000, found %g)", where,
-                     width_mm);
+    return PTIE_FAIL(PTIE_EINVAL, "%s: width_mm out of range (expected 0 or 20..2000, found %g)",
+                     where, width_mm);
 }
 
 /* Bytes that continue a character, or -1 where none begins. */
@@ -44,7 +44,8 @@ static ptie_status check_panel(const ptie_panel *panel, const char *where) {
     PTIE_TRY(ptie_check_integer(panel->height_px, 1, 1 << 20, where, "height_px"));
     PTIE_TRY(ptie_check_integer(panel->colormap, PTIE_GRAY, PTIE_DIVERGING, where, "colormap"));
     if (!isfinite(panel->pixel_m))
-        return PTIE_FAIL(PTIE_EINVAL, "%s: pixel_m is not finite (found %g)", where, panel->pixel_m);
+        return PTIE_FAIL(PTIE_EINVAL, "%s: pixel_m is not finite (found %g)", where,
+                         panel->pixel_m);
     if (isfinite(panel->low) && isfinite(panel->high) && panel->low <= panel->high) return PTIE_OK;
     return PTIE_FAIL(PTIE_EINVAL, "%s: bad value range (expected low <= high, found %g..%g)", where,
                      panel->low, panel->high);

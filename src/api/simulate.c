@@ -30,7 +30,8 @@ static ptie_status check_outputs(const ptie_simulate_params *p, const char *wher
     PTIE_TRY(ptie_check_pointer(p->output, where, "output"));
     const char *ending = strrchr(p->output, '.');
     if (!ending || (strcmp(ending, ".h5") != 0 && strcmp(ending, ".hdf5") != 0))
-        return PTIE_FAIL(PTIE_EINVAL, "%s: cannot write this kind of file (expected .h5 or .hdf5)", p->output);
+        return PTIE_FAIL(PTIE_EINVAL, "%s: cannot write this kind of file (expected .h5 or .hdf5)",
+                         p->output);
     if (p->rig && strcmp(p->rig, p->output) == 0)
         return PTIE_FAIL(PTIE_EINVAL, "%s: recording and rig need names of their own", p->output);
     return PTIE_OK;
@@ -53,7 +54,8 @@ static ptie_status check(const ptie_simulate_params *p, const char *where) {
     return ptie_check_number(p->flow.wavelength_m, 1e-12, 1e-2, where, "flow.wavelength_m");
 }
 
-ptie_status ptie_simulate(ptie_ctx *ctx, const ptie_simulate_params *params, ptie_progress progress) {
+ptie_status ptie_simulate(ptie_ctx *ctx, const ptie_simulate_params *params,
+                          ptie_progress progress) {
     static const char where[] = "ptie_simulate";
     ptie_simulate_params own;
     ptie_simulate_params_init(&own);

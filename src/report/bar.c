@@ -41,10 +41,10 @@ static double share_of(ptie_limits span, double value) {
     return (value - span.low) / (span.high - span.low);
 }
 
-/* The last label carries the power of ten and the unit; labels stay within the bar.  False when two come
-   closer than a space. */
-static bool place(label_row *out, cairo_t *cr, const ptie_ticks *ticks, ptie_limits span, const char *unit,
-                  double length) {
+/* The last label carries the power of ten and the unit; labels stay within the bar.  False when two
+   come closer than a space. */
+static bool place(label_row *out, cairo_t *cr, const ptie_ticks *ticks, ptie_limits span,
+                  const char *unit, double length) {
     double taken = -HUGE_VAL;
     for (int32_t i = 0; i < ticks->count; i++) {
         char number[PTIE_LABEL_BYTES], factor[PTIE_LABEL_BYTES] = "";
@@ -75,8 +75,8 @@ static void choose_ticks(ptie_ticks *ticks, label_row *labels, cairo_t *cr, ptie
     (void)place(labels, cr, ticks, span, unit, length);
 }
 
-void ptie_draw_bar_below(cairo_t *cr, ptie_colormap map, ptie_limits span, const char *unit, double x,
-                         double y, double length) {
+void ptie_draw_bar_below(cairo_t *cr, ptie_colormap map, ptie_limits span, const char *unit,
+                         double x, double y, double length) {
     ptie_ticks ticks;
     label_row labels;
     ptie_set_type(cr, PTIE_SMALL, false);
@@ -91,8 +91,8 @@ void ptie_draw_bar_below(cairo_t *cr, ptie_colormap map, ptie_limits span, const
     }
 }
 
-void ptie_draw_bar_beside(cairo_t *cr, ptie_colormap map, ptie_limits span, const char *unit, double x,
-                          double y, double length) {
+void ptie_draw_bar_beside(cairo_t *cr, ptie_colormap map, ptie_limits span, const char *unit,
+                          double x, double y, double length) {
     ptie_ticks ticks;
     char text[PTIE_LABEL_BYTES];
     int32_t most = (int32_t)fmax(2, fmin(8, length / 16));

@@ -17,10 +17,10 @@ typedef struct ptie_limits {
 } ptie_limits;
 
 /* From (x, y) to the right, labels below.  `unit` may be NULL. */
-void ptie_draw_bar_below(cairo_t *cr, ptie_colormap map, ptie_limits span, const char *unit, double x,
-                         double y, double length);
+void ptie_draw_bar_below(cairo_t *cr, ptie_colormap map, ptie_limits span, const char *unit,
+                         double x, double y, double length);
 /* From (x, y) down, highest value first, labels to the right and the unit above. */
-void ptie_draw_bar_beside(cairo_t *cr, ptie_colormap map, ptie_limits span, const char *unit, double x,
-                          double y, double length);
+void ptie_draw_bar_beside(cairo_t *cr, ptie_colormap map, ptie_limits span, const char *unit,
+                          double x, double y, double length);
 
 #endif

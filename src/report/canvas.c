@@ -9,11 +9,12 @@
 #define POINTS_PER_INCH 72.0
 #define MOST_PIXELS 32767 /* per side of a cairo image */
 
-/* A PNG begins with 8 bytes of signature and 25 of IHDR; this chunk (pHYs: 11811 pixels per metre, with
-   its CRC) belongs behind them, so that text processors know the printed size.  Cairo writes none. */
+/* A PNG begins with 8 bytes of signature and 25 of IHDR; this chunk (pHYs: 11811 pixels per metre,
+   with its CRC) belongs behind them, so that text processors know the printed size.  Cairo writes
+   none. */
 #define PNG_HEAD 33
-static const unsigned char png_resolution[] = {0, 0, 0, 9, 'p', 'H', 'Y', 's', 0, 0, 0x2e, 0x23,
-                                               0, 0, 0x2e, 0x23, 1, 0x78, 0xa5, 0x3f, 0x76};
+static const unsigned char png_resolution[] = {
+    0, 0, 0, 9, 'p', 'H', 'Y', 's', 0, 0, 0x2e, 0x23, 0, 0, 0x2e, 0x23, 1, 0x78, 0xa5, 0x3f, 0x76};
 
 static cairo_status_t put(ptie_canvas *canvas, const unsigned char *data, size_t bytes) {
     canvas->written += bytes;
@@ -38,12 +39,12 @@ static ptie_status choose_kind(ptie_canvas *canvas, const char *path) {
     const char *ending = strrchr(path, '.');
     canvas->png = ending && strcasecmp(ending, ".png") == 0;
     if (canvas->png || (ending && strcasecmp(ending, ".svg") == 0)) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: not a kind of figure (expected a name ending in .png or .svg)",
-                     path);
+    return PTIE_FAIL(PTIE_EUNSUPPORTED,
+                     "%s: not a kind of figure (expected a name ending in .png or .svg)", path);
 }
 
-/* Starts drawing: points as the unit, sans serif, and no hinting, so that text has the same shape and
-   width in every format. */
+/* Starts drawing: points as the unit, sans serif, and no hinting, so that text has the same shape
+   and width in every format. */
 static void start(ptie_canvas *canvas) {
     canvas->cr = cairo_create(canvas->surface);
     if (cairo_surface_get_type(canvas->surface) == CAIRO_SURFACE_TYPE_IMAGE)
@@ -71,7 +72,8 @@ ptie_status ptie_canvas_open(ptie_canvas *canvas, const char *path, double width
     PTIE_TRY(choose_kind(canvas, path));
     double limit = MOST_PIXELS * POINTS_PER_INCH / PTIE_DPI;
     if (width_pt > limit || height_pt > limit)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: figure too large (expected at most %.0f mm, found %.0f x %.0f mm)",
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "%s: figure too large (expected at most %.0f mm, found %.0f x %.0f mm)",
                          path, limit / PTIE_POINTS_PER_MM, width_pt / PTIE_POINTS_PER_MM,
                          height_pt / PTIE_POINTS_PER_MM);
     PTIE_TRY(ptie_output_open(&canvas->file, path, overwrite));
@@ -80,9 +82,9 @@ ptie_status ptie_canvas_open(ptie_canvas *canvas, const char *path, double width
         ptie_canvas_discard(canvas);
         return status;
     }
-    canvas->surface = canvas->png ? image_page(width_pt, height_pt)
-                                  : cairo_svg_surface_create_for_stream(write_bytes, canvas, width_pt,
-                                                                        height_pt);
+    canvas->surface =
+        canvas->png ? image_page(width_pt, height_pt)
+                    : cairo_svg_surface_create_for_stream(write_bytes, canvas, width_pt, height_pt);
     start(canvas);
     return PTIE_OK;
 }
@@ -149,7 +151,7 @@ void ptie_text_at(cairo_t *cr, const char *text, double x, double y, double anch
     cairo_new_path(cr);
 }
 
-/* Cuts UTF-8 text until it fits, ellipsis included; `cut` has room for the text and the ellipsis. */
+/* Cuts UTF-8 text until it fits, ellipsis included; `cut` has room for both. */
 static void cut_to_width(cairo_t *cr, char *cut, const char *text, double width) {
     size_t length = strlen(text);
     do {

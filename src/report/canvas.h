@@ -25,8 +25,8 @@ typedef struct ptie_canvas {
     size_t written; /* bytes of the file so far */
 } ptie_canvas;
 
-/* A white page.  The ending of `path` decides.  Errors: PTIE_EUNSUPPORTED (ending), PTIE_EINVAL (page
-   too large), those of ptie_output_open. */
+/* A white page.  The ending of `path` decides.  Errors: PTIE_EUNSUPPORTED (ending), PTIE_EINVAL
+   (page too large), those of ptie_output_open. */
 ptie_status ptie_canvas_open(ptie_canvas *canvas, const char *path, double width_pt,
                              double height_pt, bool overwrite);
 /* Writes the file whole, or leaves none; frees the page in any case. */
@@ -40,7 +40,8 @@ void ptie_canvas_measure(ptie_canvas *canvas);
 void ptie_set_colour(cairo_t *cr, uint32_t rgb);
 void ptie_set_type(cairo_t *cr, double size_pt, bool bold);
 double ptie_text_width(cairo_t *cr, const char *text);
-/* Base line at y; `anchor` 0, 0.5, 1: x is the left end, the middle, the right end.  NULL draws nothing. */
+/* Base line at y; `anchor` 0, 0.5, 1: x is the left end, the middle, the right end.  NULL draws
+ * nothing. */
 void ptie_text_at(cairo_t *cr, const char *text, double x, double y, double anchor);
 /* The same within `width`: set smaller down to PTIE_SMALL, then cut with an ellipsis. */
 void ptie_text_within(cairo_t *cr, const char *text, double x, double y, double anchor,

@@ -12,12 +12,14 @@ typedef struct table {
 static const table tables[] = {
     [PTIE_GRAY] = {2, {0x000000, 0xffffff}},
     /* Every 15th of the 256 entries of viridis (S. van der Walt and N. Smith, 2015; CC0). */
-    [PTIE_VIRIDIS] = {18, {0x440154, 0x481769, 0x472a7a, 0x433d84, 0x3d4e8a, 0x355e8d,
-                           0x2e6d8e, 0x297b8e, 0x23898e, 0x1f978b, 0x21a585, 0x2eb37c,
-                           0x46c06f, 0x65cb5e, 0x89d548, 0xb0dd2f, 0xd8e219, 0xfde725}},
+    [PTIE_VIRIDIS] = {18,
+                      {0x440154, 0x481769, 0x472a7a, 0x433d84, 0x3d4e8a, 0x355e8d, 0x2e6d8e,
+                       0x297b8e, 0x23898e, 0x1f978b, 0x21a585, 0x2eb37c, 0x46c06f, 0x65cb5e,
+                       0x89d548, 0xb0dd2f, 0xd8e219, 0xfde725}},
     /* RdBu of ColorBrewer (C. Brewer), from blue to red, with pure white in the middle. */
-    [PTIE_DIVERGING] = {11, {0x053061, 0x2166ac, 0x4393c3, 0x92c5de, 0xd1e5f0, 0xffffff,
-                             0xfddbc7, 0xf4a582, 0xd6604d, 0xb2182b, 0x67001f}},
+    [PTIE_DIVERGING] = {11,
+                        {0x053061, 0x2166ac, 0x4393c3, 0x92c5de, 0xd1e5f0, 0xffffff, 0xfddbc7,
+                         0xf4a582, 0xd6604d, 0xb2182b, 0x67001f}},
 };
 
 static uint32_t mixed(uint32_t a, uint32_t b, double share, int shift) {

@@ -17,7 +17,7 @@
 #define LARGEST 1e100 /* larger values are gaps: ranges of them would overflow */
 #define FACTOR 26.0   /* power of ten above the y axis, beside the title */
 #define MOST_TICKS 6
-#define PAD_X 0.03    /* share of the range that stays free at both ends */
+#define PAD_X 0.03 /* share of the range that stays free at both ends */
 #define PAD_Y 0.06
 #define TALLEST 220.0
 #define LEGEND_LINE 10.0
@@ -107,8 +107,10 @@ static void set_ranges(plot *p) {
     }
     ptie_widen(&p->y.low, &p->y.high);
     pad(&p->y, PAD_Y);
-    if (p->y.logarithmic) ptie_log_ticks(&p->y.ticks, p->y.low, p->y.high, MOST_TICKS);
-    else ptie_linear_ticks(&p->y.ticks, p->y.low, p->y.high, MOST_TICKS, false);
+    if (p->y.logarithmic)
+        ptie_log_ticks(&p->y.ticks, p->y.low, p->y.high, MOST_TICKS);
+    else
+        ptie_linear_ticks(&p->y.ticks, p->y.low, p->y.high, MOST_TICKS, false);
 }
 
 static double widest_label(cairo_t *cr, const ptie_ticks *ticks) {
@@ -175,11 +177,11 @@ static void draw_frame(cairo_t *cr, const plot *p) {
     cairo_rectangle(cr, p->box.x, p->box.y, p->box.width, p->box.height);
     cairo_stroke(cr);
     ptie_set_type(cr, PTIE_NORMAL, false);
-    ptie_text_within(cr, p->axes->x_label, p->box.x + p->box.width / 2, p->box.y + p->box.height + 21,
-                     0.5, p->box.width);
+    ptie_text_within(cr, p->axes->x_label, p->box.x + p->box.width / 2,
+                     p->box.y + p->box.height + 21, 0.5, p->box.width);
     if (p->axes->y_label)
-        ptie_text_upwards(cr, p->axes->y_label, p->box.x - widest - 11, p->box.y + p->box.height / 2,
-                          p->box.height);
+        ptie_text_upwards(cr, p->axes->y_label, p->box.x - widest - 11,
+                          p->box.y + p->box.height / 2, p->box.height);
 }
 
 static void set_pen(cairo_t *cr, const ptie_curve *curve) {
@@ -200,7 +202,9 @@ static void draw_curve(cairo_t *cr, const plot *p, const ptie_curve *curve) {
     bool drawing = false;
     for (size_t i = 0; i < curve->count; i++) {
         bool on = shown(p, curve, i);
-        if (on) (drawing ? cairo_line_to : cairo_move_to)(cr, place_x(p, curve->x[i]), place_y(p, curve->y[i]));
+        if (on)
+            (drawing ? cairo_line_to : cairo_move_to)(cr, place_x(p, curve->x[i]),
+                                                      place_y(p, curve->y[i]));
         drawing = on;
     }
     cairo_stroke(cr);
@@ -218,7 +222,7 @@ static int32_t labelled(const ptie_axes *axes) {
     return count;
 }
 
-/* How much of a curve runs through a rectangle: its points, and points on the lines between them. */
+/* How much of a curve runs through a rectangle: its points, and some on the lines between. */
 static size_t hidden(const plot *p, const ptie_curve *curve, cairo_rectangle_t box) {
     size_t count = 0;
     for (size_t i = 0; i < curve->count; i++) {
@@ -270,8 +274,10 @@ static void draw_legend(cairo_t *cr, const plot *p) {
     double widest = 0;
     ptie_set_type(cr, PTIE_SMALL, false);
     for (int32_t c = 0; c < axes->count; c++)
-        if (axes->curves[c].label) widest = fmax(widest, ptie_text_width(cr, axes->curves[c].label));
-    cairo_rectangle_t box = legend_box(p, LEGEND_SAMPLE + widest + 10, LEGEND_LINE * labelled(axes) + 4);
+        if (axes->curves[c].label)
+            widest = fmax(widest, ptie_text_width(cr, axes->curves[c].label));
+    cairo_rectangle_t box =
+        legend_box(p, LEGEND_SAMPLE + widest + 10, LEGEND_LINE * labelled(axes) + 4);
     cairo_rectangle(cr, box.x, box.y, box.width, box.height);
     cairo_set_source_rgba(cr, 1, 1, 1, 0.85);
     cairo_fill(cr);
@@ -326,11 +332,14 @@ static void draw_plot(cairo_t *cr, const plot *p, int32_t index, bool letter, bo
     if (legend) draw_legend(cr, p);
     cairo_restore(cr);
     const char *name = p->axes->title ? p->axes->title : "";
-    if (letter) snprintf(title, sizeof title, "%c) %s", 'a' + index % 26, name);
-    else snprintf(title, sizeof title, "%s", name);
+    if (letter)
+        snprintf(title, sizeof title, "%c) %s", 'a' + index % 26, name);
+    else
+        snprintf(title, sizeof title, "%s", name);
     double factor = p->y.ticks.exponent ? 2 * FACTOR : 0;
     ptie_set_type(cr, PTIE_NORMAL, true);
-    ptie_text_within(cr, title, p->box.x + p->box.width / 2, p->box.y - 4, 0.5, p->box.width - factor);
+    ptie_text_within(cr, title, p->box.x + p->box.width / 2, p->box.y - 4, 0.5,
+                     p->box.width - factor);
 }
 
 /* Plots of one size, side by side; returns the height of the figure. */
@@ -340,7 +349,8 @@ static double lay_out(plot *plots, int32_t count, double cell, double top) {
     double width = cell - left - 5; /* half of the last tick label may hang over */
     double height = fmin(0.8 * width, TALLEST);
     for (int32_t i = 0; i < count; i++)
-        plots[i].box = (cairo_rectangle_t){MARGIN + i * (cell + GAP) + left, top + TITLE, width, height};
+        plots[i].box =
+            (cairo_rectangle_t){MARGIN + i * (cell + GAP) + left, top + TITLE, width, height};
     return top + TITLE + height + BELOW;
 }
 

@@ -47,7 +47,7 @@ ptie_status ptie_panel_span(ptie_limits *span, const ptie_panel *panel) {
     return PTIE_OK;
 }
 
-/* Mean over columns x0..x1 and rows y0..y1, pixels at the border by their share; NaN if one is NaN. */
+/* Mean over columns x0..x1 and rows y0..y1, border pixels by their share; NaN if one is NaN. */
 static double area_mean(const ptie_panel *panel, double x0, double x1, double y0, double y1) {
     double sum = 0;
     for (int32_t y = (int32_t)y0; y < y1; y++) {
@@ -60,8 +60,8 @@ static double area_mean(const ptie_panel *panel, double x0, double x1, double y0
     return sum / ((x1 - x0) * (y1 - y0));
 }
 
-/* The stretch of the map, in its pixels, that printed pixel i covers: several pixels, or the one below
-   its centre. */
+/* The stretch of the map, in its pixels, that printed pixel i covers: several pixels, or the one
+   below its centre. */
 static void covered(double *from, double *to, int32_t i, int32_t pixels, int32_t printed) {
     double step = (double)pixels / printed;
     *from = step >= 1 ? i * step : floor((i + 0.5) * step);
@@ -135,7 +135,8 @@ static void fill_with_rim(cairo_t *cr, double ink) {
 }
 
 /* A round length of at most a third of the width, in the lower left corner. */
-static void draw_scale_bar(cairo_t *cr, const ptie_panel *panel, ptie_limits span, cairo_rectangle_t box) {
+static void draw_scale_bar(cairo_t *cr, const ptie_panel *panel, ptie_limits span,
+                           cairo_rectangle_t box) {
     double length_m = ptie_round_down(panel->pixel_m * panel->width_px / 3);
     double length = box.width * length_m / (panel->pixel_m * panel->width_px);
     double x = box.x + 4, y = box.y + box.height - 5.5, ink = ink_for(panel, span);
@@ -150,7 +151,8 @@ static void draw_scale_bar(cairo_t *cr, const ptie_panel *panel, ptie_limits spa
 }
 
 void ptie_draw_map(cairo_t *cr, const ptie_panel *panel, ptie_limits span, cairo_rectangle_t box) {
-    cairo_surface_t *image = coloured(panel, span, printed_pixels(box.width), printed_pixels(box.height));
+    cairo_surface_t *image =
+        coloured(panel, span, printed_pixels(box.width), printed_pixels(box.height));
     draw_image(cr, image, box);
     cairo_surface_destroy(image);
     if (panel->pixel_m > 0) draw_scale_bar(cr, panel, span, box);

@@ -10,9 +10,9 @@
    Errors: PTIE_ENOMEM. */
 ptie_status ptie_panel_span(ptie_limits *span, const ptie_panel *panel);
 
-/* Draws the map into a rectangle at the resolution of the print, also in an SVG: pixels are averaged where
-   there are more, and are squares where there are fewer.  With a frame and, for a known pixel pitch, a
-   scale bar. */
+/* Draws the map into a rectangle at the resolution of the print, also in an SVG: pixels are
+   averaged where there are more, and are squares where there are fewer.  With a frame and, for a
+   known pixel pitch, a scale bar. */
 void ptie_draw_map(cairo_t *cr, const ptie_panel *panel, ptie_limits span, cairo_rectangle_t box);
 
 #endif

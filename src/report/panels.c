@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Phase maps in rows and columns.  All columns have the same width; a row is as high as its highest map.
-   Where all maps of a row mean the same by a colour, one bar stands beside the row; else each map has
-   its own below it.  Lengths are in points. */
+/* Phase maps in rows and columns.  All columns have the same width; a row is as high as its highest
+   map. Where all maps of a row mean the same by a colour, one bar stands beside the row; else each
+   map has its own below it.  Lengths are in points. */
 #include <math.h>
 #include <string.h>
 
@@ -19,7 +19,7 @@
 typedef struct layout {
     const ptie_panels *figure;
     ptie_limits *spans; /* one per panel */
-    bool beside;      /* one bar per row */
+    bool beside;        /* one bar per row */
     double width, left, column;
 } layout;
 
@@ -68,7 +68,8 @@ static ptie_status plan(layout *l, const ptie_panels *figure) {
 }
 
 /* Where a map goes: as wide as the column, unless that makes it too high. */
-static cairo_rectangle_t map_box(const layout *l, const ptie_panel *panel, int32_t column, double y) {
+static cairo_rectangle_t map_box(const layout *l, const ptie_panel *panel, int32_t column,
+                                 double y) {
     double aspect = (double)panel->height_px / panel->width_px;
     double height = fmin(l->column * aspect, fmin(2 * l->column, TALLEST));
     double width = height / aspect;
@@ -85,7 +86,8 @@ static double row_titles_height(const layout *l, int32_t row) {
 static double row_maps_height(const layout *l, int32_t row) {
     double height = 0;
     for (int32_t c = 0; c < l->figure->columns; c++)
-        if (panel_at(l, row, c)->data) height = fmax(height, map_box(l, panel_at(l, row, c), c, 0).height);
+        if (panel_at(l, row, c)->data)
+            height = fmax(height, map_box(l, panel_at(l, row, c), c, 0).height);
     return height;
 }
 
@@ -105,11 +107,11 @@ static void draw_panel(cairo_t *cr, const layout *l, int32_t row, int32_t column
     ptie_limits span = span_at(l, row, column);
     cairo_rectangle_t box = map_box(l, panel, column, y);
     ptie_set_type(cr, PTIE_NORMAL, false);
-    ptie_text_within(cr, panel->title, box.x + box.width / 2, y - 3.5, 0.5,
-                     l->column + GAP - 2);
+    ptie_text_within(cr, panel->title, box.x + box.width / 2, y - 3.5, 0.5, l->column + GAP - 2);
     ptie_draw_map(cr, panel, span, box);
     if (!l->beside)
-        ptie_draw_bar_below(cr, panel->colormap, span, panel->unit, box.x, y + box.height + 3, box.width);
+        ptie_draw_bar_below(cr, panel->colormap, span, panel->unit, box.x, y + box.height + 3,
+                            box.width);
 }
 
 static void draw_row(cairo_t *cr, const layout *l, int32_t row, double y) {
@@ -130,7 +132,8 @@ static void draw(cairo_t *cr, const layout *l) {
     double y = MARGIN;
     if (l->figure->title) {
         ptie_set_type(cr, PTIE_LARGE, true);
-        ptie_text_within(cr, l->figure->title, l->width / 2, y + PTIE_LARGE, 0.5, l->width - 2 * MARGIN);
+        ptie_text_within(cr, l->figure->title, l->width / 2, y + PTIE_LARGE, 0.5,
+                         l->width - 2 * MARGIN);
         y += HEADLINE;
     }
     for (int32_t r = 0; r < l->figure->rows; r++) {
@@ -144,7 +147,8 @@ ptie_status ptie_draw_panels(const char *path, const ptie_panels *figure, bool o
     ptie_canvas canvas;
     ptie_status status = plan(&l, figure);
     if (status == PTIE_OK && l.column < 20)
-        status = PTIE_FAIL(PTIE_EINVAL, "%s: too narrow for %d columns", path, (int)figure->columns);
+        status =
+            PTIE_FAIL(PTIE_EINVAL, "%s: too narrow for %d columns", path, (int)figure->columns);
     if (status == PTIE_OK)
         status = ptie_canvas_open(&canvas, path, l.width, figure_height(&l), overwrite);
     if (status == PTIE_OK) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Figures: phase maps side by side, curves side by side.  Arguments are checked in src/api/figure.c. */
+/* Figures: phase maps side by side, curves side by side.  Arguments are checked in
+ * src/api/figure.c. */
 #ifndef PTIE_REPORT_REPORT_H
 #define PTIE_REPORT_REPORT_H
 

@@ -43,11 +43,13 @@ static ptie_status denoise_task(void *context, size_t i, int32_t worker) {
 
 static ptie_status denoise_frames(denoising *d, ptie_pool *pool, ptie_progress progress) {
     for (int64_t first = 0; first < d->frames;) {
-        size_t count = d->block < (size_t)(d->frames - first) ? d->block : (size_t)(d->frames - first);
+        size_t count =
+            d->block < (size_t)(d->frames - first) ? d->block : (size_t)(d->frames - first);
         for (size_t i = 0; i < count; i++)
             PTIE_TRY(ptie_io_read(d->input, first + (int64_t)i, d->maps + i * d->pixels));
         PTIE_TRY(ptie_pool_run(pool, count, denoise_task, d));
-        for (size_t i = 0; i < count; i++) PTIE_TRY(ptie_io_append(d->output, d->maps + i * d->pixels));
+        for (size_t i = 0; i < count; i++)
+            PTIE_TRY(ptie_io_append(d->output, d->maps + i * d->pixels));
         first += (int64_t)count;
         PTIE_TRY(ptie_progress_report(progress, (uint64_t)first, (uint64_t)d->frames, NULL));
     }

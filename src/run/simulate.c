@@ -93,7 +93,8 @@ static ptie_status prepare(simulation *s, ptie_pool *pool) {
 }
 
 static ptie_status describe_truth(ptie_h5 *h5, const ptie_simulate_params *p) {
-    const uint64_t dims[3] = {(uint64_t)p->frames, (uint64_t)p->flow.height_px, (uint64_t)p->flow.width_px};
+    const uint64_t dims[3] = {(uint64_t)p->frames, (uint64_t)p->flow.height_px,
+                              (uint64_t)p->flow.width_px};
     PTIE_TRY(ptie_h5_set_text(h5, TRUTH_GROUP, "NX_class", "NXdata"));
     PTIE_TRY(ptie_h5_set_text(h5, TRUTH_GROUP, "signal", "phase"));
     PTIE_TRY(ptie_h5_dataset(h5, TRUTH, PTIE_H5_F32, 3, dims, 1));
@@ -142,7 +143,8 @@ static ptie_status write_block(ptie_h5 *h5, const simulation *s, uint64_t count)
     return PTIE_OK;
 }
 
-static ptie_status write_frames(ptie_h5 *h5, simulation *s, ptie_pool *pool, ptie_progress progress) {
+static ptie_status write_frames(ptie_h5 *h5, simulation *s, ptie_pool *pool,
+                                ptie_progress progress) {
     uint64_t frames = (uint64_t)s->params->frames;
     for (uint64_t first = 0; first < frames;) {
         uint64_t count = frames - first < s->block ? frames - first : s->block;
@@ -186,8 +188,9 @@ static void print_rig(ptie_text *text, const ptie_simulate_params *p) {
 static ptie_status write_rig(const ptie_simulate_params *p) {
     ptie_text text = {0};
     print_rig(&text, p);
-    ptie_status status = text.failed ? PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", p->rig)
-                                     : ptie_write_file(p->rig, text.data, text.length, p->overwrite);
+    ptie_status status = text.failed
+                             ? PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", p->rig)
+                             : ptie_write_file(p->rig, text.data, text.length, p->overwrite);
     ptie_text_free(&text);
     return status;
 }

@@ -82,8 +82,8 @@ static void planes_are_those_of_the_truth(void **state) {
     for (int t = 0; t < FRAMES; t++) {
         float *map = truth + t * SIDE * SIDE;
         double mean = 0, peak = 0;
-        assert_ok(ptie_solver_run(solver, phase, plus + t * SIDE * SIDE, NULL, minus + t * SIDE * SIDE,
-                                  scratch));
+        assert_ok(ptie_solver_run(solver, phase, plus + t * SIDE * SIDE, NULL,
+                                  minus + t * SIDE * SIDE, scratch));
         for (int i = 0; i < SIDE * SIDE; i++) {
             mean += (double)map[i] / (SIDE * SIDE);
             peak = fmax(peak, (double)map[i]);
@@ -93,7 +93,8 @@ static void planes_are_those_of_the_truth(void **state) {
         /* What the forward model and its inverse promise of each other; measured 3.5e-7. */
         assert_true(support_relative_error(phase, map, SIDE * SIDE) < 1e-5);
     }
-    assert_true(support_relative_error(truth, truth + SIDE * SIDE, SIDE * SIDE) > 1e-3); /* it moves */
+    assert_true(support_relative_error(truth, truth + SIDE * SIDE, SIDE * SIDE) >
+                1e-3); /* it moves */
     ptie_scratch_free(scratch);
     ptie_solver_free(solver);
     ptie_ctx_free(ctx);
@@ -146,8 +147,9 @@ static void the_rig_fits_the_recording(void **state) {
     p.defocus_m = 7e-3;
     simulate(&p, 2);
     assert_ok(ptie_rig_read(&rig, p.rig));
-    assert_true(rig.wavelength_m == 633e-9 && rig.pixel_m == 13.7e-6 && rig.defocus_plus_m == 7e-3 &&
-                rig.defocus_minus_m == -7e-3 && rig.frame_rate_hz == 25e3);
+    assert_true(rig.wavelength_m == 633e-9 && rig.pixel_m == 13.7e-6 &&
+                rig.defocus_plus_m == 7e-3 && rig.defocus_minus_m == -7e-3 &&
+                rig.frame_rate_hz == 25e3);
     assert_int_equal(rig.planes, PTIE_PLANES_PAIR);
     assert_int_equal(rig.boundary, p.boundary);
     assert_int_equal(rig.polarity, 1);
@@ -167,7 +169,8 @@ static void failures_leave_no_file(void **state) {
     ptie_simulate_params p = small(path);
     p.rig = rig;
     assert_ok(ptie_ctx_create(&ctx, NULL));
-    assert_fails(ptie_simulate(ctx, &p, (ptie_progress){stop_after_three, NULL}), PTIE_ECANCELLED, "cancelled");
+    assert_fails(ptie_simulate(ctx, &p, (ptie_progress){stop_after_three, NULL}), PTIE_ECANCELLED,
+                 "cancelled");
     p.flow.morphology = "jett";
     assert_fails(ptie_simulate(ctx, &p, (ptie_progress){0}), PTIE_ENAME, "'jet'");
     p.flow.morphology = "jet", p.noise = -1;

@@ -80,7 +80,8 @@ static void pngs_have_300_dpi(void **state) {
     free(p.rgb);
     size_t bytes;
     unsigned char *file = support_read(path, &bytes);
-    static const unsigned char resolution[] = {'p', 'H', 'Y', 's', 0, 0, 0x2e, 0x23, 0, 0, 0x2e, 0x23, 1};
+    static const unsigned char resolution[] = {'p',  'H', 'Y', 's',  0,    0, 0x2e,
+                                               0x23, 0,   0,   0x2e, 0x23, 1};
     assert_memory_equal(file + 37, resolution, sizeof resolution);
     free(file);
 }
@@ -93,7 +94,8 @@ static void large_maps_are_averaged(void **state) {
     ptie_panel panel = {.data = data, .width_px = N, .height_px = N, .low = 0, .high = 1};
     const char *path = drawn("chess.png", &panel, 60);
     picture p = decode(path);
-    /* A printed pixel covers 4.2^2 squares: |mean - 1/2| <= 1/2 * (area of the odd square)/(area). */
+    /* A printed pixel covers 4.2^2 squares: |mean - 1/2| <= 1/2 * (area of the odd square)/(area).
+     */
     for (int i = -100; i < 100; i++) {
         uint32_t found = pixel(&p, p.width / 3 + i, p.height / 2 + i) & 255;
         assert_in_range(found, 127 - 15, 128 + 15);
@@ -138,19 +140,22 @@ static void outliers_do_not_set_the_range(void **state) {
     free(p.rgb);
 }
 
-/* Rows and columns of different map sizes, an empty place, titles, a shared bar: only that it works. */
+/* Rows and columns of different map sizes, an empty place, titles, a shared bar: only that it
+ * works. */
 static void grids_of_any_shape_are_drawn(void **state) {
     (void)state;
     static float data[300 * 40];
     for (int i = 0; i < 300 * 40; i++) data[i] = (float)sin(i * 0.01);
-    ptie_panel panels[6] = {{.data = data, .width_px = 300, .height_px = 40, .title = "wide", .unit = "rad"},
-                            {.data = data, .width_px = 40, .height_px = 300, .pixel_m = 1e-6},
-                            {0},
-                            {.data = data, .width_px = 1, .height_px = 1, .pixel_m = 0.3},
-                            {.data = data, .width_px = 100, .height_px = 120, .low = -1, .high = 1},
-                            {.data = data, .width_px = 3, .height_px = 40, .colormap = PTIE_DIVERGING}};
+    ptie_panel panels[6] = {
+        {.data = data, .width_px = 300, .height_px = 40, .title = "wide", .unit = "rad"},
+        {.data = data, .width_px = 40, .height_px = 300, .pixel_m = 1e-6},
+        {0},
+        {.data = data, .width_px = 1, .height_px = 1, .pixel_m = 0.3},
+        {.data = data, .width_px = 100, .height_px = 120, .low = -1, .high = 1},
+        {.data = data, .width_px = 3, .height_px = 40, .colormap = PTIE_DIVERGING}};
     const char *rows[] = {"first row", NULL};
-    ptie_panels figure = {.panels = panels, .rows = 2, .columns = 3, .row_titles = rows, .title = "All"};
+    ptie_panels figure = {
+        .panels = panels, .rows = 2, .columns = 3, .row_titles = rows, .title = "All"};
     assert_ok(ptie_figure_panels(support_temporary("grid.png"), &figure, true));
     assert_ok(ptie_figure_panels(support_temporary("grid.svg"), &figure, true));
     figure.rows = 3, figure.columns = 2, figure.row_titles = NULL, figure.width_mm = 40;
@@ -184,7 +189,8 @@ static void assert_well_formed(const char *text) {
 static ptie_axes falling_curve(double x[20], double y[20], ptie_curve *curve) {
     for (int i = 0; i < 20; i++) x[i] = i + 1, y[i] = exp(-i / 4.0);
     *curve = (ptie_curve){.x = x, .y = y, .count = 20, .label = "loss <&>", .colour = 0};
-    return (ptie_axes){.curves = curve, .count = 1, .title = "Loss", .x_label = "epoch", .y_label = "loss"};
+    return (ptie_axes){
+        .curves = curve, .count = 1, .title = "Loss", .x_label = "epoch", .y_label = "loss"};
 }
 
 static void svgs_are_well_formed(void **state) {
@@ -256,7 +262,8 @@ static void failures_leave_no_file(void **state) {
     ptie_panel panel = {.data = data, .width_px = 2, .height_px = 1};
     ptie_panels figure = {.panels = &panel, .rows = 1, .columns = 1};
     const char *path = support_temporary("figure.jpg");
-    assert_fails(ptie_figure_panels(path, &figure, true), PTIE_EUNSUPPORTED, "ending in .png or .svg");
+    assert_fails(ptie_figure_panels(path, &figure, true), PTIE_EUNSUPPORTED,
+                 "ending in .png or .svg");
     assert_false(support_exists(path));
     path = support_temporary("folder.png");
     assert_int_equal(mkdir(path, 0700), 0);
@@ -266,8 +273,8 @@ static void failures_leave_no_file(void **state) {
     support_write(path, "mine", 4);
     assert_fails(ptie_figure_panels(path, &figure, false), PTIE_EEXIST, "exists already");
     assert_nothing_left(path);
-    assert_fails(ptie_figure_panels(support_temporary("no/such/folder.svg"), &figure, true), PTIE_EIO,
-                 "No such file");
+    assert_fails(ptie_figure_panels(support_temporary("no/such/folder.svg"), &figure, true),
+                 PTIE_EIO, "No such file");
     const char *wrong[] = {"\xff", "\xc3", "\xe2\x82", "a\x80", "\xf0\x90\x80z"};
     path = support_temporary("title.png");
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {

@@ -16,9 +16,9 @@ static double shown(const char *label) {
 
 static void linear_ticks_are_round_inside_and_distinct(void **state) {
     (void)state;
-    static const double ranges[][2] = {{0, 1},         {-1, 1},         {0.13, 0.38},   {1, 20},
-                                       {-3.7, -3.1},   {1e-9, 4e-9},    {-2e-13, 1e-13}, {1e7, 9e7},
-                                       {1000, 1000.1}, {-0.098, 0.099}, {0, 1023},      {-5e-324, 1}};
+    static const double ranges[][2] = {
+        {0, 1},          {-1, 1},    {0.13, 0.38},   {1, 20},         {-3.7, -3.1}, {1e-9, 4e-9},
+        {-2e-13, 1e-13}, {1e7, 9e7}, {1000, 1000.1}, {-0.098, 0.099}, {0, 1023},    {-5e-324, 1}};
     for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++) {
         for (int32_t most = 5; most <= PTIE_MAX_TICKS; most++) {
             double low = ranges[r][0], high = ranges[r][1];
@@ -35,7 +35,8 @@ static void linear_ticks_are_round_inside_and_distinct(void **state) {
                 assert_near(shown(text) * pow(10, t.exponent), t.value[i], 1e-6 * step);
             }
             /* There is no room for another tick at either end. */
-            assert_true(t.value[0] - step < low + slack && t.value[t.count - 1] + step > high - slack);
+            assert_true(t.value[0] - step < low + slack &&
+                        t.value[t.count - 1] + step > high - slack);
         }
     }
 }
@@ -50,7 +51,8 @@ static void ticks_of_counts_are_whole(void **state) {
 
 static void empty_ranges_are_opened(void **state) {
     (void)state;
-    double ranges[][2] = {{0, 0}, {5, 5}, {-2e-9, -2e-9}, {1, -1}, {(double)NAN, (double)NAN}, {HUGE_VAL, -HUGE_VAL}};
+    double ranges[][2] = {
+        {0, 0}, {5, 5}, {-2e-9, -2e-9}, {1, -1}, {(double)NAN, (double)NAN}, {HUGE_VAL, -HUGE_VAL}};
     for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++) {
         double low = ranges[r][0], high = ranges[r][1];
         ptie_widen(&low, &high);
@@ -123,12 +125,16 @@ static void colours_are_those_of_the_published_maps(void **state) {
                    {203, {0.468053, 0.818921, 0.323998}}, {247, {0.916242, 0.896091, 0.100717}}};
     for (size_t i = 0; i < sizeof viridis / sizeof *viridis; i++) {
         uint32_t expected = 0;
-        for (int c = 0; c < 3; c++) expected = expected << 8 | (uint32_t)lround(255 * viridis[i].rgb[c]);
-        assert_in_range(distance(ptie_colour(PTIE_VIRIDIS, viridis[i].entry / 255.0), expected), 0, 6);
+        for (int c = 0; c < 3; c++)
+            expected = expected << 8 | (uint32_t)lround(255 * viridis[i].rgb[c]);
+        assert_in_range(distance(ptie_colour(PTIE_VIRIDIS, viridis[i].entry / 255.0), expected), 0,
+                        6);
     }
     assert_int_equal(ptie_colour(PTIE_DIVERGING, 0.5), 0xffffff);
-    assert_true(channel(ptie_colour(PTIE_DIVERGING, 0.2), 0) > channel(ptie_colour(PTIE_DIVERGING, 0.2), 16));
-    assert_true(channel(ptie_colour(PTIE_DIVERGING, 0.8), 0) < channel(ptie_colour(PTIE_DIVERGING, 0.8), 16));
+    assert_true(channel(ptie_colour(PTIE_DIVERGING, 0.2), 0) >
+                channel(ptie_colour(PTIE_DIVERGING, 0.2), 16));
+    assert_true(channel(ptie_colour(PTIE_DIVERGING, 0.8), 0) <
+                channel(ptie_colour(PTIE_DIVERGING, 0.8), 16));
     assert_int_equal(ptie_colour(PTIE_GRAY, 100 / 255.0), 0x646464);
     assert_int_equal(ptie_colour(PTIE_GRAY, -HUGE_VAL), 0);
     assert_int_equal(ptie_colour(PTIE_GRAY, 7), 0xffffff);
@@ -139,7 +145,8 @@ static void nan_is_no_colour_of_a_map(void **state) {
     for (int map = PTIE_GRAY; map <= PTIE_DIVERGING; map++) {
         assert_int_equal(ptie_colour((ptie_colormap)map, (double)NAN), PTIE_NAN_COLOUR);
         for (int i = 0; i <= 1000; i++)
-            assert_true(distance(ptie_colour((ptie_colormap)map, i / 1000.0), PTIE_NAN_COLOUR) > 30);
+            assert_true(distance(ptie_colour((ptie_colormap)map, i / 1000.0), PTIE_NAN_COLOUR) >
+                        30);
     }
 }
 
