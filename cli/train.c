@@ -148,6 +148,9 @@ static int conclude(const settings *s) {
         say("%s: best epoch %d of %zu: validation loss %.4f, PSNR %.2f dB, MAE %.4f", s->output,
             epochs[best].epoch, count, epochs[best].validation.loss,
             epochs[best].validation.psnr_db, epochs[best].validation.mae);
+    else
+        say("%s: stopped before the first epoch ended; --resume goes on from %s.last", s->output,
+            s->output);
     int code =
         s->figure && count > 0 ? draw_history(s->figure, epochs, count, s->compute.force) : DONE;
     ptie_history_free(epochs);

@@ -160,16 +160,19 @@ static ptie_status save_best(ptie_trainer *t) {
     return ptie_nn_save(t->model, t->path, true);
 }
 
-/* The checkpoint comes last: killed before it, the run repeats the epoch's end to the same files.
- */
+/* The checkpoint comes last: killed before it, the run repeats the epoch's end to the same files. */
+static ptie_status save_state(ptie_trainer *t) {
+    PTIE_TRY(ptie_history_write(t->path, t->epochs, t->epoch_count));
+    return ptie_checkpoint_save(t);
+}
+
 static ptie_status finish_epoch(ptie_trainer *t) {
     const double start_s = now_s();
     ptie_scores validation;
     PTIE_TRY(validate(t, &validation));
     close_epoch(t, &validation, now_s() - start_s);
     PTIE_TRY(save_best(t));
-    PTIE_TRY(ptie_history_write(t->path, t->epochs, t->epoch_count));
-    PTIE_TRY(ptie_checkpoint_save(t));
+    PTIE_TRY(save_state(t));
 
     char note[160];
     const ptie_epoch *row = &t->epochs[t->epoch_count - 1];
@@ -301,7 +304,7 @@ ptie_status ptie_train_run(const ptie_engine *engine, ptie_model *model,
     if (status == PTIE_OK) {
         status = run_epochs(&t);
         const bool stopped = status == PTIE_OK || status == PTIE_ECANCELLED;
-        const ptie_status saved = stopped ? ptie_checkpoint_save(&t) : PTIE_OK;
+        const ptie_status saved = stopped ? save_state(&t) : PTIE_OK;
         if (saved != PTIE_OK) status = saved;
     }
     free_trainer(&t);

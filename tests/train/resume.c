@@ -335,6 +335,11 @@ static void a_time_limit_stops_with_a_state(void **state) {
     assert_ok(tiny_train(path, 1, &params, silent));
     assert_true(support_exists(side_file(path, ".last")));
     assert_false(support_exists(path));
+    ptie_epoch *epochs;
+    size_t count;
+    assert_ok(ptie_history_read(&epochs, &count, path)); /* no epoch is complete, and it says so */
+    assert_int_equal(count, 0);
+    ptie_history_free(epochs);
     train_steps(path, 1, 0, true);
     assert_same_run(path, whole);
 }
