@@ -56,7 +56,8 @@ int failed(ptie_status status) {
         return 128 + interrupted();
     }
     /* Memory that the program itself did not get leaves no message in the library. */
-    say("ptie: %s", status == PTIE_ENOMEM ? "out of memory" : without_function(ptie_last_error()));
+    const char *message = ptie_last_error();
+    say("ptie: %s", *message ? without_function(message) : "out of memory");
     return status == PTIE_EINVAL || status == PTIE_ENAME ? MISUSED : FAILED;
 }
 

@@ -33,6 +33,8 @@ static void catch_signal(int number) {
 void catch_interrupts(void) {
     catch_signal(SIGINT);
     catch_signal(SIGTERM);
+    catch_signal(SIGHUP);          /* the terminal was closed */
+    signal(SIGXFSZ, SIG_IGN);      /* a write beyond the file-size limit fails instead */
 }
 
 int interrupted(void) {

@@ -127,9 +127,14 @@ ptie_status measure_frame(series_set *set, int64_t t) {
 
 static ptie_stat over_frames(const double *values, int64_t frames) {
     double mean = 0, squares = 0;
-    for (int64_t t = 0; t < frames; t++) mean += values[t] / (double)frames;
-    for (int64_t t = 0; t < frames; t++) squares += (values[t] - mean) * (values[t] - mean);
-    return (ptie_stat){mean, frames > 1 ? sqrt(squares / (double)(frames - 1)) : 0};
+    int64_t count = 0;
+    for (int64_t t = 0; t < frames; t++)
+        if (isfinite(values[t])) mean += values[t], count++;
+    if (count == 0) return (ptie_stat){(double)NAN, (double)NAN};
+    mean /= (double)count;
+    for (int64_t t = 0; t < frames; t++)
+        if (isfinite(values[t])) squares += (values[t] - mean) * (values[t] - mean);
+    return (ptie_stat){mean, count > 1 ? sqrt(squares / (double)(count - 1)) : 0};
 }
 
 ptie_run_row summarise_series(const series_set *set, int which) {

@@ -51,7 +51,7 @@ typedef struct ptie_run_params {
 
 PTIE_API void ptie_run_params_init(ptie_run_params *params);
 
-/* Mean and standard deviation over frames. */
+/* Mean and standard deviation over the frames that have a finite value; NaN if none has. */
 typedef struct ptie_stat { double mean, std; } ptie_stat;
 
 typedef struct ptie_run_row {    /* one kind of map: the TIE phase, or the denoised phase */

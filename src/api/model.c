@@ -82,10 +82,6 @@ ptie_status ptie_denoiser_create(ptie_denoiser **out, ptie_ctx *ctx, const ptie_
     PTIE_TRY(ptie_check_pointer(model, where, "model"));
     PTIE_TRY(ptie_check_integer(width_px, 1, LARGEST, where, "width_px"));
     PTIE_TRY(ptie_check_integer(height_px, 1, LARGEST, where, "height_px"));
-    if (model->params.in_channels != 1)
-        return PTIE_FAIL(PTIE_ESIZE,
-                         "%s: model '%s' wants other inputs (expected 1 channel, found %d)", where,
-                         model->name, model->params.in_channels);
     return ptie_nn_denoiser(out, &ctx->engine, model, width_px, height_px);
 }
 

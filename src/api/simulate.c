@@ -6,6 +6,7 @@
 
 #include "api/context.h"
 #include "api/params.h"
+#include "base/file.h"
 #include "run/simulate.h"
 
 #define MOST_FRAMES 100000000
@@ -32,9 +33,7 @@ static ptie_status check_outputs(const ptie_simulate_params *p, const char *wher
     if (!ending || (strcmp(ending, ".h5") != 0 && strcmp(ending, ".hdf5") != 0))
         return PTIE_FAIL(PTIE_EINVAL, "%s: cannot write this kind of file (expected .h5 or .hdf5)",
                          p->output);
-    if (p->rig && strcmp(p->rig, p->output) == 0)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: recording and rig need names of their own", p->output);
-    return PTIE_OK;
+    return ptie_output_differs(p->output, p->rig);
 }
 
 /* What the flow and the optics do not check themselves. */

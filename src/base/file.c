@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -29,6 +30,30 @@ static ptie_status may_write(const char *path, bool overwrite) {
     if (!overwrite)
         return PTIE_FAIL(PTIE_EEXIST, "%s: exists already (use -f to overwrite)", path);
     return PTIE_OK;
+}
+
+/* Same device and inode, or, for a file that is not there yet, the same name in the same folder. */
+static bool same_file(const char *a, const char *b) {
+    struct stat x, y;
+    const bool a_exists = stat(a, &x) == 0, b_exists = stat(b, &y) == 0;
+    if (a_exists != b_exists) return false;
+    if (a_exists) return x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+    const char *a_slash = strrchr(a, '/'), *b_slash = strrchr(b, '/');
+    if (strcmp(a_slash ? a_slash + 1 : a, b_slash ? b_slash + 1 : b) != 0) return false;
+    char a_folder[PATH_MAX], b_folder[PATH_MAX];
+    snprintf(a_folder, sizeof a_folder, "%.*s", a_slash ? (int)(a_slash - a) + 1 : 1, a_slash ? a : ".");
+    snprintf(b_folder, sizeof b_folder, "%.*s", b_slash ? (int)(b_slash - b) + 1 : 1, b_slash ? b : ".");
+    return stat(a_folder, &x) == 0 && stat(b_folder, &y) == 0 && x.st_dev == y.st_dev &&
+           x.st_ino == y.st_ino;
+}
+
+ptie_status ptie_output_differs(const char *output, const char *other) {
+    if (!other) return PTIE_OK;
+    char file[PATH_MAX];
+    const char *inside = strstr(other, ":/");
+    snprintf(file, sizeof file, "%.*s", inside ? (int)(inside - other) : (int)strnlen(other, PATH_MAX), other);
+    if (!same_file(output, other) && !same_file(output, file)) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EINVAL, "%s: would be written over %s (expected a name of its own)", output, other);
 }
 
 ptie_status ptie_output_open(ptie_output_file *file, const char *path, bool overwrite) {

@@ -20,6 +20,10 @@ ptie_status ptie_output_commit(ptie_output_file *file);
 /* Removes `part`.  Fine on a file that is not open. */
 void ptie_output_discard(ptie_output_file *file);
 
+/* PTIE_EINVAL if writing `output` would write `other`, which may be an input ("file.h5:/inside" too), another
+   output, or NULL.  The same file under two names counts. */
+ptie_status ptie_output_differs(const char *output, const char *other);
+
 /* Opens `part` for writing. */
 ptie_status ptie_output_stream(const ptie_output_file *file, FILE **out);
 /* Closes a stream that was written to; reports what stdio kept for later (full disk). */

@@ -2,6 +2,7 @@
 #include "base/ini.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -197,8 +198,10 @@ void ptie_ini_print(ptie_text *out, const void *target, const ptie_ini_key *keys
         if (strcmp(section, keys[i].section) != 0)
             ptie_text_append(out, "%s[%s]\n", i ? "\n" : "", keys[i].section);
         section = keys[i].section;
+        const void *field = (const char *)target + keys[i].offset;
+        if (keys[i].kind == PTIE_INI_QUANTITY && isnan(*(const double *)field)) continue;
         ptie_text_append(out, "%s = ", keys[i].name);
-        print_field(out, &keys[i], (const char *)target + keys[i].offset);
+        print_field(out, &keys[i], field);
         ptie_text_append(out, "\n");
     }
 }

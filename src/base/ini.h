@@ -37,7 +37,8 @@ typedef struct ptie_ini_key {
 ptie_status ptie_ini_read(void *target, const ptie_ini_key *keys, size_t count, const char *text,
                           const char *where);
 
-/* Appends the target as INI text that ptie_ini_read reads back to the same values. */
+/* Appends the target as INI text that ptie_ini_read reads back to the same values.  A quantity that is NaN is
+   not set, and left out. */
 void ptie_ini_print(ptie_text *out, const void *target, const ptie_ini_key *keys, size_t count);
 
 #endif

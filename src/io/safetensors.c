@@ -242,8 +242,8 @@ static ptie_status read_parts(ptie_safetensors *file, const char *path, FILE *st
         return PTIE_FAIL(PTIE_EFORMAT, "%s: too short for a safetensors file", path);
     uint64_t bytes = ptie_get_le(length, LENGTH_BYTES);
     if (bytes > HEADER_LIMIT || bytes > file_bytes - LENGTH_BYTES)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: bad header length %llu in a file of %llu bytes", path,
-                         (unsigned long long)bytes, (unsigned long long)file_bytes);
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: not a safetensors file, or cut (expected a header within %llu bytes, found %llu)", path,
+                         (unsigned long long)file_bytes, (unsigned long long)bytes);
     *header_bytes = (size_t)bytes;
     *data_bytes = file_bytes - LENGTH_BYTES - bytes;
     PTIE_TRY(ptie_alloc_status(&file->header, *header_bytes, 1, path));

@@ -55,6 +55,9 @@ ptie_status ptie_nn_denoiser(ptie_denoiser **out, const ptie_engine *engine,
     const int32_t unit = 1 << (model->params.levels - 1);
     ptie_denoiser *denoiser;
     *out = NULL;
+    if (model->params.in_channels != 1)
+        return PTIE_FAIL(PTIE_ESIZE, "model '%s' wants other inputs (expected 1 channel, found %d)",
+                         model->name, model->params.in_channels);
     PTIE_TRY(ptie_alloc_status(&denoiser, 1, sizeof *denoiser, "denoiser"));
     denoiser->kernels = engine->kernels;
     denoiser->graph = model->graph;

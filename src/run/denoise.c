@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "io/recording.h"
 #include "nn/nn.h"
@@ -21,6 +22,7 @@ typedef struct denoising {
 
 static ptie_status prepare(denoising *d, const ptie_engine *engine) {
     const ptie_denoise_params *p = d->params;
+    PTIE_TRY(ptie_output_differs(p->output, p->input));
     PTIE_TRY(ptie_io_open(&d->input, p->input));
     ptie_recording_info info = *ptie_io_info(d->input);
     d->frames = info.frames;

@@ -47,16 +47,24 @@ ptie_status ptie_run_measure(double *value, const float *map, const float *truth
     return PTIE_OK;
 }
 
+/* Over the frames that have the metric: without flow a ratio may be 0/0. */
 static ptie_stat over_frames(const double *values, int64_t frames) {
     double mean = 0, squares = 0;
-    for (int64_t t = 0; t < frames; t++) mean += values[t * PTIE_RUN_METRICS];
-    mean /= (double)frames;
+    int64_t count = 0;
     for (int64_t t = 0; t < frames; t++) {
+        if (!isfinite(values[t * PTIE_RUN_METRICS])) continue;
+        mean += values[t * PTIE_RUN_METRICS];
+        count++;
+    }
+    if (count == 0) return (ptie_stat){(double)NAN, (double)NAN};
+    mean /= (double)count;
+    for (int64_t t = 0; t < frames; t++) {
+        if (!isfinite(values[t * PTIE_RUN_METRICS])) continue;
         double off = values[t * PTIE_RUN_METRICS] - mean;
         squares += off * off;
     }
     /* n - 1: the frames are a sample of the flow.  One frame has no deviation. */
-    return (ptie_stat){mean, frames > 1 ? sqrt(squares / (double)(frames - 1)) : 0};
+    return (ptie_stat){mean, count > 1 ? sqrt(squares / (double)(count - 1)) : 0};
 }
 
 ptie_run_row ptie_run_summarise(const double *values, int64_t frames) {

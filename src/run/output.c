@@ -54,7 +54,9 @@ static ptie_status write_column(ptie_h5 *h5, const char *map, int metric, const 
 
 ptie_status ptie_output_metrics(ptie_h5 *h5, const char *map, const double *values, int64_t frames) {
     for (int metric = 0; metric < PTIE_RUN_METRICS; metric++) {
-        if (isnan(values[metric])) continue; /* no truth to compare with */
+        bool known = false;
+        for (int64_t t = 0; t < frames; t++) known |= !isnan(values[t * PTIE_RUN_METRICS + metric]);
+        if (!known) continue; /* no truth to compare with */
         PTIE_TRY(write_column(h5, map, metric, values, frames));
     }
     return PTIE_OK;

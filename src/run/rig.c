@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "run/rig.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -88,9 +89,16 @@ static ptie_status check_data_set(const char *name, const char *key, const char 
 }
 
 static ptie_status convert(ptie_rig *rig, const rig_file *file, const char *path) {
-    double plus_m = file->defocus_plus_m != 0 ? file->defocus_plus_m : file->defocus_m;
-    double minus_m = file->defocus_minus_m != 0 ? file->defocus_minus_m : -file->defocus_m;
-    if (plus_m == 0)
+    const bool plus = !isnan(file->defocus_plus_m), minus = !isnan(file->defocus_minus_m);
+    const bool both = !isnan(file->defocus_m);
+    if (both && (plus || minus))
+        return PTIE_FAIL(PTIE_EINVAL, "%s: 'defocus' does not go with 'defocus_plus' and 'defocus_minus'", path);
+    if (!both && plus != minus && (minus || file->planes != PTIE_PLANES_REFERENCE))
+        return PTIE_FAIL(PTIE_EINVAL, "%s: missing key '%s' in [optics] (expected a length such as -10 mm)",
+                         path, plus ? "defocus_minus" : "defocus_plus");
+    double plus_m = both ? file->defocus_m : file->defocus_plus_m;
+    double minus_m = both ? -file->defocus_m : minus ? file->defocus_minus_m : -plus_m;
+    if (isnan(plus_m) || plus_m == 0)
         return PTIE_FAIL(PTIE_EINVAL, "%s: missing key 'defocus' in [optics] (expected a length such as 10 mm)",
                          path);
     if (file->planes != PTIE_PLANES_REFERENCE && minus_m >= plus_m)
@@ -122,7 +130,9 @@ ptie_status ptie_rig_read(ptie_rig *rig, const char *path) {
     char *text;
     size_t bytes;
     PTIE_TRY(ptie_read_file(&text, &bytes, path, MAX_RIG_BYTES));
-    rig_file file = {.magnification = 1, .polarity = 1, .binning = 1, .boundary = PTIE_MIRROR,
+    const double none = (double)NAN;
+    rig_file file = {.defocus_m = none, .defocus_plus_m = none, .defocus_minus_m = none,
+                     .magnification = 1, .polarity = 1, .binning = 1, .boundary = PTIE_MIRROR,
                      .zero_border = true};
     ptie_status status = ptie_ini_read(&file, rig_keys, RIG_KEYS, text, path);
     if (status == PTIE_OK) status = convert(rig, &file, path);
@@ -131,8 +141,12 @@ ptie_status ptie_rig_read(ptie_rig *rig, const char *path) {
 }
 
 char *ptie_rig_print(const ptie_rig *rig) {
+    const bool equal = rig->defocus_minus_m == -rig->defocus_plus_m;
+    const double none = (double)NAN;
     rig_file file = {.wavelength_m = rig->wavelength_m, .pixel_m = rig->pixel_m, .magnification = 1,
-                     .defocus_plus_m = rig->defocus_plus_m, .defocus_minus_m = rig->defocus_minus_m,
+                     .defocus_m = equal ? rig->defocus_plus_m : none,
+                     .defocus_plus_m = equal ? none : rig->defocus_plus_m,
+                     .defocus_minus_m = equal ? none : rig->defocus_minus_m,
                      .frame_rate_hz = rig->frame_rate_hz, .cutoff_m = rig->cutoff_m,
                      .planes = (int)rig->planes, .polarity = rig->polarity + 1,
                      .boundary = (int)rig->boundary, .binning = rig->binning,

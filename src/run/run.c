@@ -98,8 +98,23 @@ static ptie_status allocate(run *r) {
     return ptie_alloc_status(&r->labels, r->pixels, 1, "run");
 }
 
+static bool regions_given(const ptie_run_params *p) {
+    const ptie_rect none = {0};
+    return memcmp(&p->jet, &none, sizeof none) != 0 || memcmp(&p->background, &none, sizeof none) != 0;
+}
+
+static ptie_status check_outputs(const ptie_run_params *p) {
+    const char *const inputs[] = {p->plus, p->zero, p->minus, p->reference, p->rig->reference, p->truth};
+    for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++) {
+        PTIE_TRY(ptie_output_differs(p->output, inputs[i]));
+        if (p->metrics_csv) PTIE_TRY(ptie_output_differs(p->metrics_csv, inputs[i]));
+    }
+    return ptie_output_differs(p->output, p->metrics_csv);
+}
+
 static ptie_status prepare(run *r) {
     const ptie_run_params *p = r->params;
+    PTIE_TRY(check_outputs(p));
     PTIE_TRY(ptie_source_open(&r->source, p));
     r->shape = ptie_source_get_shape(r->source);
     r->pixels = (size_t)r->shape.width_px * (size_t)r->shape.height_px;
@@ -108,6 +123,9 @@ static ptie_status prepare(run *r) {
     PTIE_TRY(ptie_frame_plan_create(&r->plan, r->engine, p->rig, p->model, r->shape.width_px,
                                     r->shape.height_px));
     PTIE_TRY(allocate(r));
+    if (regions_given(p)) /* before the work: they may lie outside the frame */
+        PTIE_TRY(ptie_metrics_label_rects(r->labels, r->shape.width_px, r->shape.height_px, p->jet,
+                                          p->background));
     double rate_hz = p->rig->frame_rate_hz > 0 ? p->rig->frame_rate_hz : r->shape.frame_rate_hz;
     if (p->metrics_csv) PTIE_TRY(ptie_output_open(&r->csv, p->metrics_csv, p->overwrite));
     return ptie_output_create(&r->output, p,
@@ -155,10 +173,7 @@ static ptie_status solve_frames(run *r, ptie_progress progress) {
     return PTIE_OK;
 }
 
-static ptie_status find_regions(run *r) {
-    const ptie_run_params *p = r->params;
-    if (p->jet.width_px > 0)
-        return ptie_metrics_label_rects(r->labels, r->shape.width_px, r->shape.height_px, p->jet, p->background);
+static ptie_status propose_regions(run *r) {
     float *mean = r->phase; /* the block is free now */
     for (size_t i = 0; i < r->pixels; i++) mean[i] = (float)(r->mean[i] / (double)r->frames);
     return ptie_metrics_propose(r->labels, mean, r->shape.width_px, r->shape.height_px);
@@ -191,7 +206,7 @@ static ptie_status read_truth(run *r, int64_t first, size_t count) {
 
 /* Second pass: the metrics of every frame. */
 static ptie_status measure_frames(run *r) {
-    PTIE_TRY(find_regions(r));
+    if (!regions_given(r->params)) PTIE_TRY(propose_regions(r));
     for (r->done = 0; r->done < r->frames; r->done += r->block) {
         size_t count = (size_t)(r->frames - r->done < r->block ? r->frames - r->done : r->block);
         uint64_t first = (uint64_t)r->done;

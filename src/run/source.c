@@ -44,7 +44,14 @@ static ptie_status open_beside_plus(ptie_recording **out, const ptie_source *sou
     if (!path && !dataset[0])
         return PTIE_FAIL(PTIE_EINVAL, "run: plane '%s' is missing (expected a recording, or its data set in "
                                       "the rig's [planes])", name);
-    if (!path) path = params->plus;
+    char beside[MAX_PATH_BYTES];
+    if (!path) { /* another data set of the file that holds plus */
+        const char *inside = strstr(params->plus, ":/");
+        size_t length = inside ? (size_t)(inside - params->plus) : strlen(params->plus);
+        if (length >= sizeof beside) return PTIE_FAIL(PTIE_EINVAL, "%s: path too long", params->plus);
+        snprintf(beside, sizeof beside, "%.*s", (int)length, params->plus);
+        path = beside;
+    }
     PTIE_TRY(open_plane(out, path, dataset));
     return same_shape(source->plus, params->plus, *out, path, true);
 }

@@ -29,7 +29,7 @@ A file of another kind
   ! ptie: */tests/cli/run: unknown kind of file (expected NPY, PNG, TIFF or HDF5) (glob)
   [1]
   $ cp text.tif m.safetensors; ptie info m.safetensors
-  ! ptie: m.safetensors: bad header length 7309940746704154478 in a file of 16 bytes
+  ! ptie: m.safetensors: not a safetensors file, or cut (expected a header within 16 bytes, found 7309940746704154478)
   [1]
 
 A folder without frames

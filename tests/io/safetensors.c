@@ -171,9 +171,9 @@ static void header_length_is_checked(void **state) {
     (void)state;
     const char *path = support_temporary("length.safetensors");
     support_write(path, "\x03\0\0\0\0\0\0\0{}", 10);
-    assert_fails(read_and_free(path), PTIE_EFORMAT, "bad header length 3 in a file of 10 bytes");
+    assert_fails(read_and_free(path), PTIE_EFORMAT, "expected a header within 10 bytes, found 3");
     support_write(path, "\xff\xff\xff\xff\xff\xff\xff\xff{}", 10);
-    assert_fails(read_and_free(path), PTIE_EFORMAT, "bad header length");
+    assert_fails(read_and_free(path), PTIE_EFORMAT, "not a safetensors file");
     assert_fails(read_and_free(support_temporary("none.safetensors")), PTIE_EIO, "No such file");
     assert_fails(read_and_free(support_temporary(".")), PTIE_EIO, "directory");
 }

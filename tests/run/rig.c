@@ -83,6 +83,12 @@ static void bad_rigs_get_one_line(void **state) {
                                                "defocus_plus = 1 mm\ndefocus_minus = 2 mm\n")),
                  PTIE_EINVAL, "defocus_minus must lie below defocus_plus");
     assert_fails(ptie_rig_load(&rig, support_temporary("none.ini")), PTIE_EIO, "No such file");
+    assert_fails(ptie_rig_load(&rig, write_rig("[optics]\nwavelength = 532 nm\npixel = 20 um\n"
+                                               "defocus_plus = 10 mm\n")),
+                 PTIE_EINVAL, "missing key 'defocus_minus'");
+    assert_fails(ptie_rig_load(&rig, write_rig("[optics]\nwavelength = 532 nm\npixel = 20 um\n"
+                                               "defocus = 10 mm\ndefocus_minus = 0 mm\n")),
+                 PTIE_EINVAL, "'defocus' does not go with");
     assert_int_equal(rig.polarity, 7); /* untouched by every failure */
 }
 

@@ -189,6 +189,79 @@ static void regions_can_be_given(void **state) {
     assert_fails(run_with(&s, 1, &summary), PTIE_EINVAL, "jet");
 }
 
+static ptie_status denoise_with_two_inputs(void) {
+    ptie_ctx *ctx;
+    ptie_model *model;
+    ptie_model_params m;
+    ptie_denoise_params p;
+    ptie_model_params_init(&m);
+    m.in_channels = 2;
+    assert_ok(ptie_ctx_create(&ctx, NULL));
+    assert_ok(ptie_model_create(&model, &m));
+    ptie_denoise_params_init(&p);
+    p.input = support_temporary("truth.npy");
+    p.output = support_temporary("two.npy");
+    p.model = model;
+    ptie_status status = ptie_denoise(ctx, &p, (ptie_progress){0});
+    ptie_model_free(model);
+    ptie_ctx_free(ctx);
+    return status;
+}
+
+static void a_model_of_other_inputs_is_refused(void **state) {
+    (void)state;
+    assert_fails(denoise_with_two_inputs(), PTIE_ESIZE, "expected 1 channel, found 2");
+}
+
+static void an_output_is_never_an_input(void **state) {
+    (void)state;
+    setting s;
+    ptie_run_summary summary;
+    size_t bytes, after;
+    char other_name[300], csv[300];
+    init(&s);
+    snprintf(other_name, sizeof other_name, "%s", s.plus);
+    *strrchr(other_name, '/') = 0;
+    strcat(other_name, "/./plus.npy"); /* the same file under another name */
+    unsigned char *before = support_read(s.plus, &bytes);
+    s.params.output = other_name;
+    assert_fails(run_with(&s, 1, &summary), PTIE_EINVAL, "would be written over");
+    s.params.output = s.output;
+    snprintf(csv, sizeof csv, "%s", s.truth);
+    s.params.metrics_csv = csv;
+    assert_fails(run_with(&s, 1, &summary), PTIE_EINVAL, "would be written over");
+    s.params.metrics_csv = s.output;
+    assert_fails(run_with(&s, 1, &summary), PTIE_EINVAL, "would be written over");
+    unsigned char *kept = support_read(s.plus, &after);
+    assert_int_equal(after, bytes);
+    assert_memory_equal(kept, before, bytes);
+    free(before), free(kept);
+}
+
+/* Without flow and noise in the first frame, SBR and CNR are 0/0 there; the others still count. */
+static void a_frame_without_a_metric_does_not_hide_it(void **state) {
+    (void)state;
+    static float frames[2][FRAMES][PIXELS];
+    static const char *const names[2] = {"plus.npy", "minus.npy"};
+    setting s;
+    ptie_run_summary summary;
+    init(&s);
+    char paths[2][300];
+    for (int plane = 0; plane < 2; plane++) {
+        ptie_recording *recording;
+        assert_ok(ptie_recording_open(&recording, support_temporary(names[plane])));
+        for (int t = 0; t < FRAMES; t++) assert_ok(ptie_recording_read(recording, t, frames[plane][t]));
+        ptie_recording_close(recording);
+        for (int i = 0; i < PIXELS; i++) frames[plane][0][i] = 1000;
+        snprintf(paths[plane], sizeof paths[0], "%s", support_temporary(plane ? "still-.npy" : "still+.npy"));
+        write_recording(paths[plane], frames[plane], FRAMES);
+    }
+    s.params.plus = paths[0];
+    s.params.minus = paths[1];
+    assert_ok(run_with(&s, 2, &summary));
+    assert_true(isfinite(summary.phase.cnr.mean) && summary.phase.cnr.mean > 1);
+}
+
 static bool nothing_left(const setting *s) {
     char part[300];
     snprintf(part, sizeof part, "%s.part", s->output);
@@ -280,6 +353,9 @@ int main(void) {
         cmocka_unit_test(one_plane_with_a_reference_gives_the_same_phase),
         cmocka_unit_test(binning_solves_on_larger_pixels),
         cmocka_unit_test(regions_can_be_given),
+        cmocka_unit_test(a_model_of_other_inputs_is_refused),
+        cmocka_unit_test(an_output_is_never_an_input),
+        cmocka_unit_test(a_frame_without_a_metric_does_not_hide_it),
         cmocka_unit_test(what_does_not_fit_is_refused_and_leaves_nothing),
         cmocka_unit_test(cancelling_leaves_nothing),
         cmocka_unit_test(metrics_go_to_csv),
