@@ -22,7 +22,7 @@ typedef struct ptie_train_params {
     uint64_t steps_limit;     /* stop after so many optimiser steps in all; 0 = none */
     int32_t checkpoint_steps; /* also write `last` every so many steps; 0 = per epoch only */
     bool overwrite;           /* replace an existing model */
-    bool resume;              /* go on from <path>.last; exact to the bit */
+    bool resume;              /* go on from <path>.last; exact to the bit on the same kernel level */
 } ptie_train_params;
 
 PTIE_API void ptie_train_params_init(ptie_train_params *params);

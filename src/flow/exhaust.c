@@ -101,9 +101,9 @@ static float barrel(const ptie_exhaust *e, float width, float x, float y) {
     return disc(e, outer, y) * e->gas + disc(e, fminf(inner, 0.92f * outer), y) * (inside - e->gas);
 }
 
-/* Behind the disk a dense, slow slug that the jet drags along. */
+/* Behind the disk a dense, slow slug that the jet drags along; it takes the place of the jet's gas. */
 static float slug(const ptie_exhaust *e, float x, float y) {
-    return disc(e, e->disk_radius, y) * e->behind * expf(1 - x / e->disk);
+    return disc(e, e->disk_radius, y) * (e->behind - e->gas) * expf(1 - x / e->disk);
 }
 
 static float cells(const ptie_exhaust *e, float x, float y) {

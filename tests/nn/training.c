@@ -7,9 +7,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "base/random.h"
 #include "nn/loss.h"
 #include "nn/model.h"
+#include "nn/stepper.h"
 
 static const ptie_loss_weights paper_weights = {0.5, 0.4, 0.1};
 
@@ -269,9 +271,43 @@ static void sizes_that_do_not_fit_are_named(void **state) {
     ptie_engine_stop(&engine);
 }
 
-/* Dropout keeps the mean: with a linear head and no ReLU in between it would be exact; here the
-   share of zeros in the mask is what can be seen, from the loss of two steps that differ in nothing
-   else. */
+/* On ones: 0 or 1/(1-p), so that the mean stays, with a share p of zeros; other masks for other samples
+   and steps. */
+static void dropout_masks_a_share_and_keeps_the_mean(void **state) {
+    (void)state;
+    enum { SIDE = 64, CHANNELS = 8, VALUES = SIDE * SIDE * CHANNELS };
+    ptie_model_params params = family(2, (int32_t[]){4, 6});
+    ptie_model *model;
+    params.dropout = 0.3;
+    assert_ok(ptie_nn_create(&model, &params));
+    ptie_stepper stepper = {.model = model, .seed = 7, .step = 1};
+    ptie_map map = ptie_map_make(CHANNELS, SIDE, SIDE);
+    float *block = ptie_alloc(ptie_map_floats(&map), sizeof(float));
+    float *ones = ptie_alloc(VALUES, sizeof(float));
+    float *mask[3];
+    map = ptie_map_in(map, block);
+    for (int i = 0; i < VALUES; i++) ones[i] = 1;
+    for (int k = 0; k < 3; k++) { /* sample 0, sample 1, sample 0 of the next step */
+        mask[k] = ptie_alloc(VALUES, sizeof(float));
+        stepper.step = k == 2 ? 2 : 1;
+        ptie_map_load(&map, ones);
+        ptie_dropout(&stepper, &map, k == 1);
+        ptie_map_store(mask[k], &map);
+        int zeros = 0;
+        for (int i = 0; i < VALUES; i++) {
+            assert_true(mask[k][i] == 0 || mask[k][i] == (float)(1 / 0.7));
+            zeros += mask[k][i] == 0;
+        }
+        assert_near((double)zeros / VALUES, 0.3, 5 * sqrt(0.3 * 0.7 / VALUES)); /* 5 sigma, binomial */
+    }
+    assert_memory_not_equal(mask[0], mask[1], VALUES * sizeof(float));
+    assert_memory_not_equal(mask[0], mask[2], VALUES * sizeof(float));
+    for (int k = 0; k < 3; k++) ptie_free(mask[k]);
+    ptie_free(ones);
+    ptie_free(block);
+    ptie_nn_free(model);
+}
+
 static void dropout_depends_on_the_step_only(void **state) {
     (void)state;
     ptie_model_params params = family(2, (int32_t[]){4, 6});
@@ -302,6 +338,7 @@ int main(void) {
         cmocka_unit_test(threads_do_not_change_a_bit),
         cmocka_unit_test(a_short_batch_ignores_the_rest),
         cmocka_unit_test(sizes_that_do_not_fit_are_named),
+        cmocka_unit_test(dropout_masks_a_share_and_keeps_the_mean),
         cmocka_unit_test(dropout_depends_on_the_step_only),
     };
     return cmocka_run_group_tests_name("training", tests, NULL, NULL);
