@@ -44,7 +44,7 @@ static double block_mean(const float *map, int32_t width, int32_t x, int32_t y, 
 }
 
 /* Least squares of the measured differences between neighbouring blocks on the map's; 0 for a map
- * without structure, or with the opposite one: the flow's sign is the polarity's to say.  The outermost sixteenth is left out: boundary conditions and padding show
+ * without structure.  The outermost sixteenth is left out: boundary conditions and padding show
  * there. */
 static double fit_gain(const float *map, const float *measured, int32_t width, int32_t height) {
     const int32_t shorter = width < height ? width : height;
@@ -62,7 +62,7 @@ static double fit_gain(const float *map, const float *measured, int32_t width, i
                 square += d * d;
             }
         }
-    return square > 0 && product > 0 ? product / square : 0;
+    return square > 0 ? product / square : 0;
 }
 
 /* Level of the flow-free background: the 15 % quantile, which is the median of the lowest 30 %, to
