@@ -62,6 +62,9 @@ void ptie_conv3x3_pack_adjoint(float *packed, const float *weights, int32_t out_
 
 #define PTIE_SSIM_WINDOW 11
 
+/* Independent chains of multiply_add: a multiple of what every level keeps in registers at once. */
+#define PTIE_CHAIN_FLOATS 192
+
 typedef struct ptie_kernels {
 #define PTIE_KERNEL(name, parameters) void(*name) parameters;
 #include "kernel/kernels.inc"

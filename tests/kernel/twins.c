@@ -372,6 +372,19 @@ static void test_window_adjoint(twin *t) {
     check_window(t, true);
 }
 
+/* A round multiplies the error that is there by |factor| < 1 and adds that of a product and a sum. */
+static void test_multiply_add(twin *t) {
+    float *found = make_floats(t, PTIE_CHAIN_FLOATS), expected[PTIE_CHAIN_FLOATS];
+    memcpy(expected, found, sizeof expected);
+    const float factor = (float)uniform(t, -1, 1), addend = (float)uniform(t, -1, 1);
+    const double largest = 1 + t->width; /* |value| grows by less than 1 in a round */
+    t->kernels->multiply_add(found, factor, addend, t->width);
+    t->scalar->multiply_add(expected, factor, addend, t->width);
+    for (int i = 0; i < PTIE_CHAIN_FLOATS; i++)
+        assert_near((double)found[i], (double)expected[i], 2 * t->width * gamma_n(2) * largest);
+    free(found);
+}
+
 /* All widths, with channels and heights that go round; then all channel counts. */
 static void run_cases(void (*test)(twin *)) {
     if (ptie_cpu_detect() == PTIE_CPU_SCALAR) skip();
