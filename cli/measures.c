@@ -44,7 +44,7 @@ void print_measures(measured *columns, int count) {
             table_set(&t, row, c + 1, "%s", text);
         }
     }
-    table_print(&t);
+    if (row > 0) table_print(&t);
 }
 
 void print_measures_json(measured *columns, int count) {

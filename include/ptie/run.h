@@ -65,6 +65,7 @@ typedef struct ptie_run_summary {
     double pixel_m;
     ptie_run_row phase, denoised;   /* denoised: all NaN without a model */
     ptie_run_row truth;             /* the true phase by the same measures; all NaN without truth */
+    bool has_regions; /* false: none given and none to propose, so MGM, SBR, BNS and CNR are NaN */
     double seconds;
 } ptie_run_summary;
 
@@ -73,6 +74,7 @@ typedef struct ptie_run_summary {
      /entry/data/phase, /entry/data/denoised  [T, H, W] float32, rad
      /entry/metrics/...                       [T]
      /entry/process_1                         program, version, parameters
+   A recording without flow has no regions to propose: its maps are kept, and summary->has_regions is false.
    Errors: those of its parts; PTIE_ESIZE (planes, reference or truth of another size or length). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_run(ptie_ctx *ctx, const ptie_run_params *params,
                                              ptie_run_summary *summary, ptie_progress progress);

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/image.h"
 #include "metrics/metrics.h"
 
 static const char *const names[PTIE_RUN_METRICS] = {"mgm", "sbr", "bns", "cnr", "rmse_rad", "correlation"};
@@ -34,13 +35,16 @@ static void compare_with_truth(double *rmse, double *correlation, const float *m
 
 ptie_status ptie_run_measure(double *value, const float *map, const float *truth, const uint8_t *labels,
                              int32_t width_px, int32_t height_px) {
-    ptie_flow_metrics flow;
-    PTIE_TRY(ptie_metrics_flow(&flow, map, labels, width_px, height_px));
-    value[PTIE_MGM] = flow.mgm;
-    value[PTIE_SBR] = flow.sbr;
-    value[PTIE_BNS] = flow.bns;
-    value[PTIE_CNR] = flow.cnr;
-    value[PTIE_RMSE_RAD] = value[PTIE_CORRELATION] = (double)NAN;
+    for (int i = 0; i < PTIE_RUN_METRICS; i++) value[i] = (double)NAN;
+    PTIE_TRY(ptie_image_finite(map, width_px, height_px, "map"));
+    if (labels) {
+        ptie_flow_metrics flow;
+        PTIE_TRY(ptie_metrics_flow(&flow, map, labels, width_px, height_px));
+        value[PTIE_MGM] = flow.mgm;
+        value[PTIE_SBR] = flow.sbr;
+        value[PTIE_BNS] = flow.bns;
+        value[PTIE_CNR] = flow.cnr;
+    }
     if (truth)
         compare_with_truth(&value[PTIE_RMSE_RAD], &value[PTIE_CORRELATION], map, truth,
                            (size_t)width_px * (size_t)height_px);

@@ -12,8 +12,9 @@ enum { PTIE_MGM, PTIE_SBR, PTIE_BNS, PTIE_CNR, PTIE_RMSE_RAD, PTIE_CORRELATION, 
 /* "mgm", "sbr", "bns", "cnr", "rmse_rad", "correlation". */
 const char *ptie_run_metric_name(int which);
 
-/* One map against its regions and, where `truth` is not NULL, against the truth.  Both maps' means are
-   taken out before they are compared: a TIE phase has none.  value: PTIE_RUN_METRICS numbers. */
+/* One map against its regions and against the truth, as far as `labels` and `truth` are not NULL; the rest is
+   NaN.  Both maps' means are taken out before they are compared: a TIE phase has none.
+   value: PTIE_RUN_METRICS numbers. */
 ptie_status ptie_run_measure(double *value, const float *map, const float *truth, const uint8_t *labels,
                              int32_t width_px, int32_t height_px);
 

@@ -31,6 +31,7 @@ typedef struct run {
     float *true_phase, *true_raw;                  /* (block, H, W); one frame as recorded */
     double *mean;                                  /* (H, W): sum of the best map over frames */
     uint8_t *labels;                               /* (H, W) */
+    bool has_regions;                              /* labels has both of them */
     double *phase_metrics, *denoised_metrics, *truth_metrics; /* (frames, PTIE_RUN_METRICS) */
     int64_t done; /* frames of the current block's first */
 } run;
@@ -123,7 +124,8 @@ static ptie_status prepare(run *r) {
     PTIE_TRY(ptie_frame_plan_create(&r->plan, r->engine, p->rig, p->model, r->shape.width_px,
                                     r->shape.height_px));
     PTIE_TRY(allocate(r));
-    if (regions_given(p)) /* before the work: they may lie outside the frame */
+    r->has_regions = regions_given(p);
+    if (r->has_regions) /* before the work: they may lie outside the frame */
         PTIE_TRY(ptie_metrics_label_rects(r->labels, r->shape.width_px, r->shape.height_px, p->jet,
                                           p->background));
     double rate_hz = p->rig->frame_rate_hz > 0 ? p->rig->frame_rate_hz : r->shape.frame_rate_hz;
@@ -173,10 +175,13 @@ static ptie_status solve_frames(run *r, ptie_progress progress) {
     return PTIE_OK;
 }
 
+/* Maps without flow have none, which is no reason to give up the maps. */
 static ptie_status propose_regions(run *r) {
     float *mean = r->phase; /* the block is free now */
     for (size_t i = 0; i < r->pixels; i++) mean[i] = (float)(r->mean[i] / (double)r->frames);
-    return ptie_metrics_propose(r->labels, mean, r->shape.width_px, r->shape.height_px);
+    ptie_status status = ptie_metrics_propose(r->labels, mean, r->shape.width_px, r->shape.height_px);
+    r->has_regions = status == PTIE_OK;
+    return status == PTIE_ENUMERIC ? PTIE_OK : status;
 }
 
 static ptie_status measure_task(void *context, size_t i, int32_t worker) {
@@ -184,13 +189,12 @@ static ptie_status measure_task(void *context, size_t i, int32_t worker) {
     run *r = context;
     size_t row = ((size_t)r->done + i) * PTIE_RUN_METRICS;
     const float *truth = frame_of(r->true_phase, r, i);
+    const uint8_t *labels = r->has_regions ? r->labels : NULL;
     const int32_t width = r->shape.width_px, height = r->shape.height_px;
-    PTIE_TRY(ptie_run_measure(r->phase_metrics + row, frame_of(r->phase, r, i), truth, r->labels, width, height));
-    if (truth)
-        PTIE_TRY(ptie_run_measure(r->truth_metrics + row, truth, NULL, r->labels, width, height));
+    PTIE_TRY(ptie_run_measure(r->phase_metrics + row, frame_of(r->phase, r, i), truth, labels, width, height));
+    if (truth) PTIE_TRY(ptie_run_measure(r->truth_metrics + row, truth, NULL, labels, width, height));
     if (!r->denoised) return PTIE_OK;
-    return ptie_run_measure(r->denoised_metrics + row, frame_of(r->denoised, r, i), truth, r->labels, width,
-                            height);
+    return ptie_run_measure(r->denoised_metrics + row, frame_of(r->denoised, r, i), truth, labels, width, height);
 }
 
 static ptie_status read_truth(run *r, int64_t first, size_t count) {
@@ -206,7 +210,7 @@ static ptie_status read_truth(run *r, int64_t first, size_t count) {
 
 /* Second pass: the metrics of every frame. */
 static ptie_status measure_frames(run *r) {
-    if (!regions_given(r->params)) PTIE_TRY(propose_regions(r));
+    if (!r->has_regions) PTIE_TRY(propose_regions(r));
     for (r->done = 0; r->done < r->frames; r->done += r->block) {
         size_t count = (size_t)(r->frames - r->done < r->block ? r->frames - r->done : r->block);
         uint64_t first = (uint64_t)r->done;
@@ -216,7 +220,8 @@ static ptie_status measure_frames(run *r) {
         PTIE_TRY(read_truth(r, r->done, count));
         PTIE_TRY(ptie_pool_run(r->engine->pool, count, measure_task, r));
     }
-    PTIE_TRY(ptie_output_regions(r->output, r->labels, r->shape.width_px, r->shape.height_px));
+    if (r->has_regions)
+        PTIE_TRY(ptie_output_regions(r->output, r->labels, r->shape.width_px, r->shape.height_px));
     PTIE_TRY(ptie_output_metrics(r->output, "phase", r->phase_metrics, r->frames));
     if (r->denoised)
         PTIE_TRY(ptie_output_metrics(r->output, "denoised", r->denoised_metrics, r->frames));
@@ -239,6 +244,7 @@ static ptie_run_summary summarise(const run *r) {
         .phase = row_of(r->phase_metrics, r->frames),
         .denoised = row_of(r->denoised_metrics, r->frames),
         .truth = row_of(r->truth_metrics, r->frames),
+        .has_regions = r->has_regions,
     };
 }
 

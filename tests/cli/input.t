@@ -128,6 +128,18 @@ A frame that is not a number
   plus.npy
   rig.ini
 
+Planes without a flow
+  $ $TESTS/npy same.npy 2 32 32
+  $ printf '[optics]\nwavelength = 532 nm\npixel = 20 um\ndefocus = 10 mm\n' > rig.ini
+  $ ptie reconstruct --rig rig.ini --plus same.npy --minus same.npy -o phase.h5
+  2 frames of 32 x 32 px, 20 um each, in * s (* frames/s) (glob)
+  
+  ! ptie: phase.h5: no flow to tell from the background, so no metrics of regions (name them with --jet and --background)
+  $ ls
+  phase.h5
+  rig.ini
+  same.npy
+
 Frames that are not there
   $ ptie simulate jet -o jet.h5 --size 32 --frames 3
   ! jet.h5: 3 frames of 32 x 32 px with the truth; rig in jet.ini

@@ -262,6 +262,36 @@ static void a_frame_without_a_metric_does_not_hide_it(void **state) {
     assert_true(isfinite(summary.phase.cnr.mean) && summary.phase.cnr.mean > 1);
 }
 
+/* Two equal planes are no flow: nothing to propose regions from, but maps there are, and RMSE. */
+static void maps_without_flow_are_kept_without_regions(void **state) {
+    (void)state;
+    static float still[FRAMES][PIXELS], phase[FRAMES][PIXELS];
+    setting s;
+    ptie_run_summary summary;
+    size_t bytes;
+    char path[256], csv[256];
+    init(&s);
+    for (int i = 0; i < FRAMES * PIXELS; i++) still[i / PIXELS][i % PIXELS] = 1000;
+    snprintf(path, sizeof path, "%s", support_temporary("still.npy"));
+    snprintf(csv, sizeof csv, "%s", support_temporary("still.csv"));
+    write_recording(path, still, FRAMES);
+    s.params.plus = s.params.minus = path;
+    s.params.metrics_csv = csv;
+    assert_ok(run_with(&s, 2, &summary));
+    assert_false(summary.has_regions);
+    assert_true(isnan(summary.phase.mgm.mean) && isnan(summary.phase.cnr.mean));
+    assert_true(summary.phase.rmse_rad.mean > 0.1); /* of a blob with 0.25 rad rms */
+    read_phase(phase, s.output);
+    for (int i = 0; i < PIXELS; i++) assert_true(phase[FRAMES - 1][i] == 0);
+    char *text = (char *)support_read(csv, &bytes);
+    assert_non_null(strstr(text, "\n10,,,,,0."));
+    free(text);
+    s.params.jet = (ptie_rect){14, 16, 12, 8};
+    s.params.background = (ptie_rect){0, 0, 48, 6};
+    assert_ok(run_with(&s, 2, &summary));
+    assert_true(summary.has_regions && summary.phase.mgm.mean == 0);
+}
+
 static bool nothing_left(const setting *s) {
     char part[300];
     snprintf(part, sizeof part, "%s.part", s->output);
@@ -356,6 +386,7 @@ int main(void) {
         cmocka_unit_test(a_model_of_other_inputs_is_refused),
         cmocka_unit_test(an_output_is_never_an_input),
         cmocka_unit_test(a_frame_without_a_metric_does_not_hide_it),
+        cmocka_unit_test(maps_without_flow_are_kept_without_regions),
         cmocka_unit_test(what_does_not_fit_is_refused_and_leaves_nothing),
         cmocka_unit_test(cancelling_leaves_nothing),
         cmocka_unit_test(metrics_go_to_csv),
