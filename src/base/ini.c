@@ -55,7 +55,7 @@ static ptie_status complain(reading *r, const ptie_ini_key *key, const char *exp
 }
 
 static ptie_status out_of_range(reading *r, const ptie_ini_key *key, const char *found) {
-    snprintf(r->message, sizeof r->message, "%s: out of range (expected %g to %g in SI units, found '%.60s')",
+    ptie_print(r->message, sizeof r->message, "%s: out of range (expected %g to %g in SI units, found '%.60s')",
              key->name, key->low, key->high, found);
     return PTIE_EFORMAT;
 }

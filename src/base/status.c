@@ -8,6 +8,8 @@
 
 #include <ptie/version.h>
 
+#include "base/text.h"
+
 static _Thread_local char message_buffer[PTIE_MESSAGE_BYTES];
 
 const char *ptie_last_error(void) {
@@ -23,7 +25,7 @@ ptie_status ptie_fail(ptie_status status, const char *format, ...) {
     char line[PTIE_MESSAGE_BYTES];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(line, sizeof line, format, arguments);
+    ptie_vprint(line, sizeof line, format, arguments);
     va_end(arguments);
     memcpy(message_buffer, line, sizeof line);
     return status;

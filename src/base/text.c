@@ -3,15 +3,55 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <locale.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __APPLE__
+#include <xlocale.h>
+#endif
 
 #include "base/memory.h"
 
 #define MAX_WORD 63
+
+/* This thread's locale while it speaks C; without memory it keeps the one it has. */
+typedef struct spoken {
+    locale_t c, before;
+} spoken;
+
+static spoken speak_c(void) {
+    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    return (spoken){c, uselocale(c)};
+}
+
+static void speak_as_before(spoken s) {
+    uselocale(s.before);
+    if (s.c) freelocale(s.c);
+}
+
+int ptie_vprint(char *text, size_t bytes, const char *format, va_list arguments) {
+    const spoken s = speak_c();
+    const int length = vsnprintf(text, bytes, format, arguments);
+    speak_as_before(s);
+    return length;
+}
+
+int ptie_print(char *text, size_t bytes, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = ptie_vprint(text, bytes, format, arguments);
+    va_end(arguments);
+    return length;
+}
+
+double ptie_scan_number(const char *text, char **end) {
+    const spoken s = speak_c();
+    const double number = strtod(text, end);
+    speak_as_before(s);
+    return number;
+}
 
 /* Levenshtein distance, case-insensitive, over the first MAX_WORD characters. */
 static size_t edit_distance(const char *a, const char *b) {
@@ -76,7 +116,7 @@ static const char *const expected[] = {
 
 const char *ptie_parse_quantity(const char *text, ptie_quantity quantity, double *value) {
     char *end;
-    double number = strtod(text, &end);
+    double number = ptie_scan_number(text, &end);
     if (end == text || !isfinite(number)) return expected[quantity];
     while (*end == ' ' || *end == '\t') end++;
     size_t length = strlen(end);
@@ -100,8 +140,8 @@ static bool print_exactly(char text[32], double value, const unit *u) {
     bool found = false;
     for (int digits = 1; digits <= 17; digits++) {
         char trial[32]; /* "2e+01" has fewer digits than "20" and is longer */
-        snprintf(trial, sizeof trial, "%.*g", digits, value / u->factor * u->divisor);
-        if (strtod(trial, NULL) * u->factor / u->divisor != value) continue;
+        ptie_print(trial, sizeof trial, "%.*g", digits, value / u->factor * u->divisor);
+        if (ptie_scan_number(trial, NULL) * u->factor / u->divisor != value) continue;
         if (found && strlen(trial) >= strlen(text)) continue;
         snprintf(text, 32, "%s", trial);
         found = true;
@@ -151,14 +191,14 @@ static bool reserve(ptie_text *text, size_t more) {
 void ptie_text_append(ptie_text *text, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    int length = vsnprintf(NULL, 0, format, arguments);
+    int length = ptie_vprint(NULL, 0, format, arguments);
     va_end(arguments);
     if (text->failed || length < 0 || !reserve(text, (size_t)length + 1)) {
         text->failed = true;
         return;
     }
     va_start(arguments, format);
-    vsnprintf(text->data + text->length, (size_t)length + 1, format, arguments);
+    ptie_vprint(text->data + text->length, (size_t)length + 1, format, arguments);
     va_end(arguments);
     text->length += (size_t)length;
 }

@@ -8,6 +8,7 @@
 
 #include "base/image.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "io/array.h"
 #include "io/pattern.h"
 #include "io/png_keys.h"
@@ -110,7 +111,7 @@ static void set_note(const encoder *e, const char *key, const char *value) {
 
 static void set_number(const encoder *e, const char *key, double value) {
     char text[32];
-    snprintf(text, sizeof text, "%.17g", value);
+    ptie_print(text, sizeof text, "%.17g", value);
     set_note(e, key, text);
 }
 

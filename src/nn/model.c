@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/random.h"
+#include "base/text.h"
 
 static ptie_status check_range(double value, double low, double high, const char *name,
                                ptie_status status, const char *where) {
@@ -97,7 +98,7 @@ void ptie_model_describe(ptie_model *model) {
                                    params->width[i]);
     ptie_fact *fact = model->facts;
 #define FACT(name, ...)                                                                            \
-    (fact->key = (name), snprintf(fact->value, sizeof fact->value, __VA_ARGS__), fact++)
+    (fact->key = (name), ptie_print(fact->value, sizeof fact->value, __VA_ARGS__), fact++)
     FACT("format", "ptie");
     FACT("ptie.arch", "%s", model->name);
     FACT("ptie.in_channels", "%d", params->in_channels);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "report/colormap.h"
 #include "report/ticks.h"
 
@@ -111,7 +112,7 @@ static void length_text(char text[PTIE_LABEL_BYTES], double length_m) {
     } units[] = {{1, "m"}, {1e-3, "mm"}, {1e-6, "µm"}, {0, "nm"}};
     int i = 0;
     while (length_m < units[i].m * (1 - 1e-9)) i++;
-    snprintf(text, PTIE_LABEL_BYTES, "%g %s", length_m / (units[i].m > 0 ? units[i].m : 1e-9),
+    ptie_print(text, PTIE_LABEL_BYTES, "%g %s", length_m / (units[i].m > 0 ? units[i].m : 1e-9),
              units[i].name);
 }
 

@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
+
 /* Slack for multiples of the step that rounding puts just outside the range. */
 #define SLACK 1e-9
 
@@ -92,10 +94,10 @@ static void log_label(char text[PTIE_LABEL_BYTES], double value) {
     double mantissa = value / power_of_ten(exponent);
     text[0] = 0;
     if (exponent >= -3 && exponent <= 3) {
-        snprintf(text, PTIE_LABEL_BYTES, "%g", value);
+        ptie_print(text, PTIE_LABEL_BYTES, "%g", value);
         return;
     }
-    if (mantissa > 1.5) snprintf(text, PTIE_LABEL_BYTES, "%.0f×", mantissa);
+    if (mantissa > 1.5) ptie_print(text, PTIE_LABEL_BYTES, "%.0f×", mantissa);
     append_power(text, exponent);
 }
 
@@ -106,7 +108,7 @@ void ptie_tick_label(char text[PTIE_LABEL_BYTES], const ptie_ticks *ticks, int32
         return;
     }
     const char *sign = value < 0 ? "−" : "";
-    snprintf(text, PTIE_LABEL_BYTES, "%s%.*f", sign, (int)ticks->decimals,
+    ptie_print(text, PTIE_LABEL_BYTES, "%s%.*f", sign, (int)ticks->decimals,
              fabs(value) / power_of_ten(ticks->exponent));
 }
 

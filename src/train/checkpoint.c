@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "nn/model.h"
 #include "train/history.h"
 #include "train/trainer.h"
@@ -184,19 +185,31 @@ static bool position_is_possible(const ptie_trainer *t) {
     return t->sums.samples == (samples < t->train_count ? samples : t->train_count);
 }
 
+/* "step samples loss psnr mae ssim seconds", as collect wrote them. */
+static bool scan_position(ptie_trainer *t, const char *text) {
+    ptie_scores *sums = &t->sums;
+    uint64_t *const counts[] = {&t->step, &sums->samples};
+    double *const numbers[] = {&sums->loss, &sums->psnr_db, &sums->mae, &sums->ssim, &t->seconds};
+    char *end;
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++, text = end) {
+        *counts[i] = strtoull(text, &end, 10);
+        if (end == text) return false;
+    }
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++, text = end) {
+        *numbers[i] = ptie_scan_number(text, &end);
+        if (end == text) return false;
+    }
+    return true;
+}
+
 static ptie_status restore_position(ptie_trainer *t, const ptie_safetensors *file) {
     const char *position, *history, *where = t->last_path.data;
     PTIE_TRY(find_note(&position, file, NOTE_POSITION, where));
     PTIE_TRY(find_note(&history, file, NOTE_HISTORY, where));
 
-    unsigned long long step, samples;
-    ptie_scores *sums = &t->sums;
-    if (sscanf(position, "%llu %llu %lg %lg %lg %lg %lg", &step, &samples, &sums->loss,
-               &sums->psnr_db, &sums->mae, &sums->ssim, &t->seconds) != 7)
+    if (!scan_position(t, position))
         return PTIE_FAIL(PTIE_EFORMAT, "%s: %s: damaged (expected 7 numbers)", where,
                          NOTE_POSITION);
-    t->step = step;
-    sums->samples = samples;
 
     ptie_epoch *epochs;
     PTIE_TRY(ptie_history_parse(&epochs, &t->epoch_count, history, where));
@@ -205,7 +218,7 @@ static ptie_status restore_position(ptie_trainer *t, const ptie_safetensors *fil
     ptie_history_free(epochs);
     if (possible) return PTIE_OK;
     return PTIE_FAIL(PTIE_EFORMAT, "%s: %s: step %llu does not fit the history", where,
-                     NOTE_POSITION, step);
+                     NOTE_POSITION, (unsigned long long)t->step);
 }
 
 static ptie_status restore_from(ptie_trainer *t, const ptie_safetensors *file) {

@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 #define MAX_HISTORY_BYTES (1 << 26)
 
@@ -75,7 +76,7 @@ static bool parse_column(const char **text, ptie_epoch *epoch, const column *c) 
         const uint64_t value = strtoull(*text, &end, 10);
         memcpy(field, &value, sizeof value);
     } else {
-        const double value = strtod(*text, &end);
+        const double value = ptie_scan_number(*text, &end);
         memcpy(field, &value, sizeof value);
     }
     const bool found = end != *text;
