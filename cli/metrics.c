@@ -132,7 +132,7 @@ static int draw(const series_set *set, const settings *s) {
     ptie_axes axes[PLOTS];
     double *frame = calloc((size_t)set->frames, sizeof *frame);
     if (!frame) return failed(PTIE_ENOMEM);
-    for (int64_t t = 0; t < set->frames; t++) frame[t] = (double)t;
+    for (int64_t t = 0; t < set->frames; t++) frame[t] = (double)(set->first_frame + t * set->frame_step);
     for (int k = 0; k < PLOTS; k++) {
         for (int i = 0; i < set->count; i++)
             curves[k][i] = (ptie_curve){.x = frame,

@@ -56,6 +56,28 @@ static int allocate(series_set *set) {
     return enough ? GO_ON : failed(PTIE_ENOMEM);
 }
 
+/* The truth's frame that belongs to frame t, or -1. */
+static int64_t true_frame(const series_set *set, int64_t t) {
+    const ptie_recording_info *info = ptie_recording_get_info(set->truth->recording);
+    int64_t behind = set->first_frame + t * set->frame_step - info->first_frame;
+    bool there = behind >= 0 && behind % info->frame_step == 0 &&
+                 behind / info->frame_step < info->frames;
+    return there ? behind / info->frame_step : -1;
+}
+
+static int check_truth(const series_set *set) {
+    const series *s = set->truth;
+    const ptie_recording_info *info = ptie_recording_get_info(s->recording);
+    if (info->width_px != set->width || info->height_px != set->height) return check_size(set, s);
+    for (int64_t t = 0; t < set->frames; t++) {
+        if (true_frame(set, t) >= 0) continue;
+        say("ptie: %s: has no truth for frame %lld of the recording (found %lld frames)", s->path,
+            (long long)(set->first_frame + t * set->frame_step), (long long)info->frames);
+        return FAILED;
+    }
+    return GO_ON;
+}
+
 int open_series(series_set *set, const operand_list *files, const char *truth) {
     ptie_status status = open_recordings(set, files);
     if (status == PTIE_OK && truth) {
@@ -67,9 +89,12 @@ int open_series(series_set *set, const operand_list *files, const char *truth) {
     set->frames = info->frames;
     set->width = info->width_px;
     set->height = info->height_px;
+    set->first_frame = info->first_frame;
+    set->frame_step = info->frame_step;
     set->pixels = (size_t)set->width * (size_t)set->height;
     int code = GO_ON;
-    for (int i = 1; i < set->count && code == GO_ON; i++) code = check_size(set, &set->series[i]);
+    for (int i = 1; i < set->count && code == GO_ON; i++)
+        code = &set->series[i] == set->truth ? check_truth(set) : check_size(set, &set->series[i]);
     return code == GO_ON ? allocate(set) : code;
 }
 
@@ -95,7 +120,7 @@ static void take_mean_out(float *map, size_t count) {
 
 /* The map in set->map. */
 static ptie_status compare_with_truth(series_set *set, ptie_comparison *found, int64_t t) {
-    ptie_status status = ptie_recording_read(set->truth->recording, t, set->true_map);
+    ptie_status status = ptie_recording_read(set->truth->recording, true_frame(set, t), set->true_map);
     if (status != PTIE_OK) return status;
     take_mean_out(set->map, set->pixels);
     take_mean_out(set->true_map, set->pixels);
@@ -105,7 +130,8 @@ static ptie_status compare_with_truth(series_set *set, ptie_comparison *found, i
 static ptie_status measure_one(series_set *set, series *s, int64_t t) {
     ptie_flow_metrics flow;
     ptie_comparison truth = {.rmse = (double)NAN, .correlation = (double)NAN};
-    ptie_status status = ptie_recording_read(s->recording, t, set->map);
+    ptie_status status =
+        ptie_recording_read(s->recording, s == set->truth ? true_frame(set, t) : t, set->map);
     if (status == PTIE_OK)
         status = ptie_flow_measure(&flow, set->map, set->labels, set->width, set->height);
     if (status == PTIE_OK && set->truth && s != set->truth)

@@ -21,6 +21,7 @@ typedef struct series_set {
     int count;
     const series *truth; /* the last series, or NULL */
     int64_t frames;
+    int64_t first_frame, frame_step; /* of the recording, as in ptie_recording_info */
     int32_t width, height;
     size_t pixels;
     float *map, *true_map;

@@ -21,6 +21,9 @@ typedef struct ptie_recording_info {
     char unit[16];       /* "rad", "counts", ... or "" */
     double frame_rate_hz;/* 0 if the file does not say */
     double pixel_m;      /* 0 if the file does not say */
+    /* Frame t was frame first_frame + t * frame_step of the recording it was made from; 0 and 1 unless the file
+       (HDF5) says so. */
+    int64_t first_frame, frame_step;
 } ptie_recording_info;
 
 typedef struct ptie_recording ptie_recording;

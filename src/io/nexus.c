@@ -44,15 +44,21 @@ static ptie_status write_axis(ptie_h5 *h5, const char *path, int32_t count, doub
     return write_ramp(h5, path, length, 0, pixel_m > 0 ? pixel_m : 1);
 }
 
+static int64_t step_of(const ptie_nexus_axes *axes) {
+    return axes->frame_step ? axes->frame_step : 1;
+}
+
 static ptie_status write_time(ptie_h5 *h5, const ptie_nexus_axes *axes) {
     const double rate = axes->frame_rate_hz > 0 ? axes->frame_rate_hz : 1;
-    const double step = axes->frame_step ? (double)axes->frame_step : 1;
+    const double step = (double)step_of(axes);
     return write_ramp(h5, TIME, axes->frames, (double)axes->first_frame / rate, step / rate);
 }
 
 static ptie_status make_time(ptie_h5 *h5, const ptie_nexus_axes *axes) {
     PTIE_TRY(ptie_h5_dataset(h5, TIME, PTIE_H5_F64, 1, &axes->frames, axes->frames ? 0 : 1024));
     PTIE_TRY(ptie_h5_set_text(h5, TIME, "units", axes->frame_rate_hz > 0 ? "s" : ""));
+    PTIE_TRY(ptie_h5_set_integer(h5, TIME, PTIE_NEXUS_FIRST_FRAME, axes->first_frame));
+    PTIE_TRY(ptie_h5_set_integer(h5, TIME, PTIE_NEXUS_FRAME_STEP, step_of(axes)));
     return axes->frames ? write_time(h5, axes) : PTIE_OK;
 }
 

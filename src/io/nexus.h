@@ -7,7 +7,7 @@
  *   /entry/data  @NX_class = "NXdata" @signal = the first map @auxiliary_signals = the others
  *                @axes = ["time", "y", "x"]
  *     NAME       [T, H, W] float32, @units @long_name @interpretation = "image"
- *     time y x   [T] [H] [W] float64, @units
+ *     time y x   [T] [H] [W] float64, @units; time has @first_frame and @frame_step, too
  */
 #ifndef PTIE_IO_NEXUS_H
 #define PTIE_IO_NEXUS_H
@@ -15,6 +15,9 @@
 #include "io/h5.h"
 
 #define PTIE_NEXUS_DATA "/entry/data"
+/* Attributes of the time axis: which frames of the recording they come from. */
+#define PTIE_NEXUS_FIRST_FRAME "first_frame"
+#define PTIE_NEXUS_FRAME_STEP "frame_step"
 
 typedef struct ptie_nexus_axes {
     uint64_t frames; /* 0: not known yet, grows */

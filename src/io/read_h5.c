@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "base/text.h"
-#include "io/h5.h"
+#include "io/nexus.h"
 #include "io/reader.h"
 
 #define PATH_BYTES sizeof((ptie_recording_info){0}.dataset)
@@ -144,6 +144,19 @@ static double axis_step(ptie_h5 *h5, const char *group, const char *axis, ptie_q
     return isfinite(step) && step > 0 ? step : 0;
 }
 
+/* Which frames of another recording these are, if the time axis says so. */
+static void take_frame_numbers(ptie_h5 *h5, const char *group, ptie_recording_info *info) {
+    char path[PATH_BYTES];
+    int64_t first, step;
+    if (!join(path, group, "time")) return;
+    if (ptie_h5_get_integer(h5, path, PTIE_NEXUS_FIRST_FRAME, &first) != PTIE_OK) return;
+    if (ptie_h5_get_integer(h5, path, PTIE_NEXUS_FRAME_STEP, &step) != PTIE_OK) return;
+    /* The number of the last frame must be one. */
+    if (first < 0 || step < 1 || info->frames - 1 > (INT64_MAX - first) / step) return;
+    info->first_frame = first;
+    info->frame_step = step;
+}
+
 /* Unit and axes of a NeXus signal, as far as they are there. */
 static void take_units(const h5_recording *recording, ptie_recording_info *info) {
     char group[PATH_BYTES];
@@ -158,6 +171,7 @@ static void take_units(const h5_recording *recording, ptie_recording_info *info)
     info->pixel_m = axis_step(recording->h5, group, "x", PTIE_LENGTH);
     double interval_s = axis_step(recording->h5, group, "time", PTIE_TIME);
     info->frame_rate_hz = interval_s > 0 ? 1 / interval_s : 0;
+    take_frame_numbers(recording->h5, group, info);
 }
 
 static ptie_status h5_load(h5_recording *recording, ptie_recording_info *info, const char *path,

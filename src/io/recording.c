@@ -87,6 +87,7 @@ ptie_status ptie_io_open(ptie_recording **out, const char *path) {
     *out = NULL;
     PTIE_TRY(ptie_alloc_status(&recording, 1, sizeof *recording, path));
     recording->path = ptie_strdup(path);
+    recording->info.frame_step = 1;
     char *file = ptie_strdup(path);
     ptie_status status = recording->path && file
                              ? open_reader(recording, file)

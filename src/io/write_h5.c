@@ -25,6 +25,8 @@ static ptie_status begin(h5_map *map, const ptie_writer_job *job) {
     map->axes = (ptie_nexus_axes){.frames = (uint64_t)info->frames,
                                   .width_px = info->width_px,
                                   .height_px = info->height_px,
+                                  .first_frame = info->first_frame,
+                                  .frame_step = info->frame_step,
                                   .frame_rate_hz = info->frame_rate_hz,
                                   .pixel_m = info->pixel_m};
     snprintf(map->path, sizeof map->path, PTIE_NEXUS_DATA "/%s", job->name);

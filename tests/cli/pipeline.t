@@ -120,6 +120,27 @@ The summary of a run and the metrics agree
   > END
   mgm sbr bns cnr rmse_rad correlation
 
+Frames of a subset are compared with the truth of the same frames
+  $ ptie simulate jet -o jet.h5 --size 64 --frames 7 --fps 500
+  ! jet.h5: 7 frames of 64 x 64 px with the truth; rig in jet.ini
+  $ ptie reconstruct --rig jet.ini jet.h5 -o phase.h5 --first 2 --step 3 --json \
+  >   --truth jet.h5:/entry/truth/phase > run.json
+  $ ptie metrics phase.h5 --truth jet.h5:/entry/truth/phase --json > metrics.json
+  $ python3 - <<'END'
+  > import json
+  > a, b = (json.load(open(name))["phase"]["rmse_rad"]["mean"] for name in ("run.json", "metrics.json"))
+  > print(abs(a - b) <= 1e-5 * a)
+  > END
+  True
+  $ ptie metrics phase.h5 --truth phase.h5:/entry/data/phase | tail -2
+  RMSE (rad) * 0.00 ± 0.00 * - (glob)
+  correlation * 1.00 ± 0.00 * - (glob)
+  $ ptie simulate jet -o short.h5 --size 64 --frames 5
+  ! short.h5: 5 frames of 64 x 64 px with the truth; rig in short.ini
+  $ ptie metrics phase.h5 --truth short.h5:/entry/truth/phase
+  ! ptie: short.h5:/entry/truth/phase: has no truth for frame 5 of the recording (found 5 frames)
+  [1]
+
 Threads do not change a byte
   $ ptie dataset -T 1 -p $TESTS/small.ini -n 9 -o d1.h5
   ! d1.h5: 9 pairs of preset */small.ini, seed 1 (glob)
