@@ -102,7 +102,9 @@ static int set_list(const command_usage *u, const option *o, const char *text) {
     return GO_ON;
 }
 
-static int set_value(const command_usage *u, const option *o, const char *text) {
+static int set_value(const command_usage *u, operand_list *operands, const option *o,
+                     const char *text) {
+    operands->given |= UINT64_C(1) << (o - u->options);
     switch (o->kind) {
     case OPTION_FLAG: *(bool *)o->value = true; return GO_ON;
     case OPTION_TEXT: *(const char **)o->value = text; return GO_ON;
@@ -127,7 +129,8 @@ static int unknown_option(const command_usage *u, const char *name) {
 }
 
 /* "--name", "--name value" or "--name=value"; *i moves to the last argument that was used. */
-static int parse_long(const command_usage *u, int argc, char **argv, int *i) {
+static int parse_long(const command_usage *u, operand_list *operands, int argc, char **argv,
+                      int *i) {
     char name[64];
     const char *text = argv[*i] + 2, *equals = strchr(text, '=');
     size_t length = equals ? (size_t)(equals - text) : strlen(text);
@@ -138,16 +141,17 @@ static int parse_long(const command_usage *u, int argc, char **argv, int *i) {
         if (strcmp(o->name, name) != 0) continue;
         if (o->kind == OPTION_FLAG && equals)
             return misused("%s: option '--%s' takes no value", u->name, name);
-        if (o->kind == OPTION_FLAG) return set_value(u, o, NULL);
+        if (o->kind == OPTION_FLAG) return set_value(u, operands, o, NULL);
         if (!equals && *i + 1 == argc)
             return misused("%s: option '--%s' needs a value (%s)", u->name, name, o->argument);
-        return set_value(u, o, equals ? equals + 1 : argv[++*i]);
+        return set_value(u, operands, o, equals ? equals + 1 : argv[++*i]);
     }
     return unknown_option(u, name);
 }
 
 /* "-f", "-fT 2", "-T2". */
-static int parse_short(const command_usage *u, int argc, char **argv, int *i) {
+static int parse_short(const command_usage *u, operand_list *operands, int argc, char **argv,
+                       int *i) {
     for (const char *letter = argv[*i] + 1; *letter; letter++) {
         if (*letter == 'h') return print_help(u);
         const option *o = NULL;
@@ -157,13 +161,13 @@ static int parse_short(const command_usage *u, int argc, char **argv, int *i) {
             return misused("%s: unknown option '-%c' (see 'ptie help %s')", u->name, *letter,
                            u->name);
         if (o->kind == OPTION_FLAG) {
-            (void)set_value(u, o, NULL);
+            (void)set_value(u, operands, o, NULL);
             continue;
         }
-        if (letter[1]) return set_value(u, o, letter + 1);
+        if (letter[1]) return set_value(u, operands, o, letter + 1);
         if (*i + 1 == argc)
             return misused("%s: option '-%c' needs a value (%s)", u->name, *letter, o->argument);
-        return set_value(u, o, argv[++*i]);
+        return set_value(u, operands, o, argv[++*i]);
     }
     return GO_ON;
 }
@@ -180,6 +184,7 @@ static int add_operand(const command_usage *u, operand_list *operands, const cha
 int parse_options(const command_usage *u, int argc, char **argv, operand_list *operands) {
     bool ended = false;
     operands->count = 0;
+    operands->given = 0;
     for (int i = 1; i < argc; i++) {
         int code;
         const char *text = argv[i];
@@ -188,11 +193,17 @@ int parse_options(const command_usage *u, int argc, char **argv, operand_list *o
         else if (strcmp(text, "--") == 0)
             code = GO_ON, ended = true;
         else if (text[1] == '-')
-            code = parse_long(u, argc, argv, &i);
+            code = parse_long(u, operands, argc, argv, &i);
         else
-            code = parse_short(u, argc, argv, &i);
+            code = parse_short(u, operands, argc, argv, &i);
         if (code != GO_ON) return code;
     }
     if (operands->count >= u->least) return GO_ON;
     return misused("%s: missing %s (see 'ptie help %s')", u->name, u->operand, u->name);
+}
+
+bool was_given(const command_usage *u, const operand_list *operands, const char *name) {
+    for (size_t i = 0; i < u->count; i++)
+        if (strcmp(u->options[i].name, name) == 0) return operands->given >> i & 1;
+    return false;
 }

@@ -56,12 +56,16 @@ enum { MOST_OPERANDS = 64 };
 typedef struct operand_list {
     const char *value[MOST_OPERANDS];
     int count;
+    uint64_t given; /* bit i: the command line has options[i] of the usage */
 } operand_list;
 
 #define GO_ON (-1)
 
 /* Reads argv[1..].  Returns GO_ON, or the exit code: 0 after help, 2 after a message. */
 int parse_options(const command_usage *usage, int argc, char **argv, operand_list *operands);
+
+/* Did the command line have the option of this name? */
+bool was_given(const command_usage *usage, const operand_list *operands, const char *name);
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 

@@ -166,7 +166,8 @@ static ptie_status compute_run(settings *s, const char *name, ptie_run_summary *
     }
     if (status == PTIE_OK && !summary->has_regions)
         say("ptie: %s: no flow to tell from the background, so no metrics of regions "
-            "(name them with --jet and --background)", s->params.output);
+            "(name them with --jet and --background)",
+            s->params.output);
     if (status == PTIE_OK && s->figure) status = draw(s, summary);
     if (status == PTIE_OK) print_summary(s, summary);
     ptie_ctx_free(ctx);

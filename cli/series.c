@@ -60,8 +60,8 @@ static int allocate(series_set *set) {
 static int64_t true_frame(const series_set *set, int64_t t) {
     const ptie_recording_info *info = ptie_recording_get_info(set->truth->recording);
     int64_t behind = set->first_frame + t * set->frame_step - info->first_frame;
-    bool there = behind >= 0 && behind % info->frame_step == 0 &&
-                 behind / info->frame_step < info->frames;
+    bool there =
+        behind >= 0 && behind % info->frame_step == 0 && behind / info->frame_step < info->frames;
     return there ? behind / info->frame_step : -1;
 }
 
@@ -120,7 +120,8 @@ static void take_mean_out(float *map, size_t count) {
 
 /* The map in set->map. */
 static ptie_status compare_with_truth(series_set *set, ptie_comparison *found, int64_t t) {
-    ptie_status status = ptie_recording_read(set->truth->recording, true_frame(set, t), set->true_map);
+    ptie_status status =
+        ptie_recording_read(set->truth->recording, true_frame(set, t), set->true_map);
     if (status != PTIE_OK) return status;
     take_mean_out(set->map, set->pixels);
     take_mean_out(set->true_map, set->pixels);

@@ -82,6 +82,11 @@ static int parse(settings *s, int argc, char **argv) {
     int code = parse_options(&usage, argc, argv, &operands);
     if (code != GO_ON) return code;
     if (!s->output) return misused("train: missing output (expected -o FILE.safetensors)");
+    static const char *const of_new_models[] = {"widths", "activation", "dropout"};
+    for (size_t i = 0; s->start && i < COUNT(of_new_models); i++)
+        if (was_given(&usage, &operands, of_new_models[i]))
+            return misused("train: --%s does not go with --from, whose model has its own",
+                           of_new_models[i]);
     if (s->widths.count < 2 || s->widths.count > PTIE_MAX_LEVELS)
         return misused("train: --widths: expected 2 to %d levels, found %d", PTIE_MAX_LEVELS,
                        s->widths.count);

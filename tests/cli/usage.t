@@ -139,6 +139,12 @@ Something is too much
   $ ptie run jet.h5 --plus plus.tif --rig r.ini -m m.safetensors -o o.h5
   ! ptie: run: expected RECORDING or --plus, not both (found 'jet.h5')
   [2]
+  $ ptie train --preset paper -o m.safetensors --from a.safetensors --widths 8,16,32
+  ! ptie: train: --widths does not go with --from, whose model has its own
+  [2]
+  $ ptie train --preset paper -o m.safetensors --from a.safetensors --dropout 0.2
+  ! ptie: train: --dropout does not go with --from, whose model has its own
+  [2]
   $ ptie metrics phase.h5 --jet 0,0,9,9
   ! ptie: metrics: --jet and --background belong together
   [2]
