@@ -18,12 +18,12 @@ typedef enum ptie_family {
 typedef struct ptie_flow_params {
     uint32_t struct_size;        /* set by ptie_flow_params_init */
     int32_t width_px, height_px; /* 16..32768 each, default 256 */
-    double pixel_m;              /* pixel pitch at the object, > 0, default 20e-6 */
-    double wavelength_m;         /* > 0, default 532e-9; physical family only */
+    double pixel_m;              /* pixel pitch at the object, 1e-9..1, default 20e-6 */
+    double wavelength_m;         /* 1e-12..1e-2, default 532e-9; physical family only */
     ptie_family family;
     const char *morphology;      /* a name of ptie_morphology_name, or "mix": composed as a data set is */
     uint64_t seed, index;        /* which flow; default 0, 0 */
-    double time_s;               /* time since the first frame; the flow moves, its identity stays */
+    double time_s;               /* 0..1e6, since the first frame; the flow moves, its identity stays */
 } ptie_flow_params;
 
 PTIE_API void ptie_flow_params_init(ptie_flow_params *params);

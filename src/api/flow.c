@@ -48,10 +48,10 @@ static ptie_status find_morphology(int32_t *which, const char *name) {
 static ptie_status check(const ptie_flow_params *params) {
     PTIE_TRY(ptie_check_integer(params->width_px, 16, 32768, WHERE, "width_px"));
     PTIE_TRY(ptie_check_integer(params->height_px, 16, 32768, WHERE, "height_px"));
-    PTIE_TRY(ptie_check_positive(params->pixel_m, WHERE, "pixel_m"));
-    PTIE_TRY(ptie_check_positive(params->wavelength_m, WHERE, "wavelength_m"));
+    PTIE_TRY(ptie_check_number(params->pixel_m, 1e-9, 1, WHERE, "pixel_m"));
+    PTIE_TRY(ptie_check_number(params->wavelength_m, 1e-12, 1e-2, WHERE, "wavelength_m"));
     PTIE_TRY(ptie_check_integer(params->family, PTIE_PARAMETRIC, PTIE_PHYSICAL, WHERE, "family"));
-    PTIE_TRY(ptie_check_number(params->time_s, 0, 1e6, WHERE, "time_s"));
+    PTIE_TRY(ptie_check_number(params->time_s, 0, 1e6, WHERE, "time_s")); /* eleven days; moving structures are counted */
     return ptie_check_pointer(params->morphology, WHERE, "morphology");
 }
 

@@ -49,6 +49,9 @@ static ptie_status check(const ptie_simulate_params *p, const char *where) {
                                 "propagation"));
     PTIE_TRY(ptie_check_integer(p->flow.width_px, 16, 32768, where, "flow.width_px"));
     PTIE_TRY(ptie_check_integer(p->flow.height_px, 16, 32768, where, "flow.height_px"));
+    PTIE_TRY(ptie_check_number(p->flow.time_s, 0, 1e6, where, "flow.time_s"));
+    PTIE_TRY(ptie_check_number(p->flow.time_s + (double)p->frames / p->frame_rate_hz, 0, 1e6, where,
+                               "time of the last frame"));
     PTIE_TRY(ptie_check_number(p->flow.pixel_m, 1e-9, 1, where, "flow.pixel_m"));
     return ptie_check_number(p->flow.wavelength_m, 1e-12, 1e-2, where, "flow.wavelength_m");
 }

@@ -175,7 +175,10 @@ static void failures_leave_no_file(void **state) {
     assert_fails(ptie_simulate(ctx, &p, (ptie_progress){0}), PTIE_ENAME, "'jet'");
     p.flow.morphology = "jet", p.noise = -1;
     assert_fails(ptie_simulate(ctx, &p, (ptie_progress){0}), PTIE_EINVAL, "noise");
-    p.noise = 0, p.output = NULL;
+    p.noise = 0, p.frame_rate_hz = 1e-9;
+    assert_fails(ptie_simulate(ctx, &p, (ptie_progress){0}), PTIE_EINVAL,
+                 "time of the last frame is out of range (expected 0..1e+06, found 5e+09)");
+    p.frame_rate_hz = 25e3, p.output = NULL;
     assert_fails(ptie_simulate(ctx, &p, (ptie_progress){0}), PTIE_EINVAL, "output");
     p.output = "jet.tif";
     assert_fails(ptie_simulate(ctx, &p, (ptie_progress){0}), PTIE_EINVAL, "jet.tif");

@@ -303,6 +303,10 @@ static void wrong_parameters_are_named(void **state) {
     params = flow("mix", PTIE_PARAMETRIC, 0);
     params.pixel_m = 0;
     assert_fails(ptie_flow_render(map, &params), PTIE_EINVAL, "pixel_m");
+    params.pixel_m = 1e-300; /* steps of 1e300 px are no 64-bit number */
+    params.time_s = 1;
+    assert_fails(ptie_flow_render(map, &params), PTIE_EINVAL,
+                 "pixel_m is out of range (expected 1e-09..1, found 1e-300)");
     params = flow("mix", PTIE_PARAMETRIC, 0);
     params.wavelength_m = (double)NAN;
     assert_fails(ptie_flow_render(map, &params), PTIE_EINVAL, "wavelength_m");
