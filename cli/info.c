@@ -6,6 +6,7 @@
 
 #include "cli.h"
 #include "facts.h"
+#include "json.h"
 
 static const char examples[] = "  ptie info                            # this machine\n"
                                "  ptie info models/paper.safetensors   # a model\n"
@@ -156,11 +157,17 @@ static void describe_rig(facts *f, const ptie_rig *rig) {
 }
 
 /* A preset is shown as its own text, which reads back. */
-static ptie_status print_preset(const char *name) {
+static ptie_status print_preset(const char *name, bool json) {
     ptie_preset *preset;
     ptie_status status = ptie_preset_load(&preset, name);
     if (status != PTIE_OK) return status;
-    printf("%s", ptie_preset_text(preset));
+    if (json) {
+        printf("{\n  \"kind\": \"preset\",\n  \"text\": ");
+        json_text(stdout, ptie_preset_text(preset));
+        printf("\n}\n");
+    } else {
+        printf("%s", ptie_preset_text(preset));
+    }
     ptie_preset_free(preset);
     return PTIE_OK;
 }
@@ -171,24 +178,26 @@ static bool is_built_in(const char *name) {
     return false;
 }
 
-/* INI files are rigs or presets.  If it is neither, what the rig's reader says is the message. */
-static ptie_status describe_ini(facts *f, const char *path) {
+/* INI files are rigs or presets.  A rig that only lacks something is one; if it is neither, what
+ * the rig's reader says is the message. */
+static ptie_status describe_ini(facts *f, const char *path, bool json) {
     ptie_rig rig;
     ptie_rig_init(&rig);
     ptie_status status = ptie_rig_load(&rig, path);
     if (status == PTIE_OK)
         describe_rig(f, &rig);
-    else if (print_preset(path) == PTIE_OK)
+    else if (status != PTIE_EINVAL && print_preset(path, json) == PTIE_OK)
         status = PTIE_OK;
     else
         status = ptie_rig_load(&rig, path);
     return status;
 }
 
-static ptie_status describe_file(facts *f, const char *path) {
-    if (ends_in(path, ".ini")) return describe_ini(f, path);
+static ptie_status describe_file(facts *f, const char *path, bool json) {
+    const bool hdf5 = ends_in(path, ".h5") || ends_in(path, ".hdf5");
+    if (ends_in(path, ".ini")) return describe_ini(f, path, json);
     if (ends_in(path, ".safetensors")) return describe_model(f, path);
-    if (ends_in(path, ".h5") && describe_dataset(f, path) == PTIE_OK) return PTIE_OK;
+    if (hdf5 && describe_dataset(f, path) == PTIE_OK) return PTIE_OK;
     return describe_recording(f, path);
 }
 
@@ -210,8 +219,8 @@ int info_command(int argc, char **argv) {
     if (code != GO_ON) return code;
     const char *name = operands.count ? operands.value[0] : NULL;
     ptie_status status = !name               ? describe_machine(&f)
-                         : is_built_in(name) ? print_preset(name)
-                                             : describe_file(&f, name);
+                         : is_built_in(name) ? print_preset(name, json)
+                                             : describe_file(&f, name, json);
     if (status != PTIE_OK) return failed(status);
     if (f.count > 0) print_facts(&f, json);
     return DONE;

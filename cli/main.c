@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The program: finds the command and runs it. */
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -99,6 +100,14 @@ int check_figure(const char *path, bool force) {
     if (!path) return GO_ON;
     if (!ends_in(path, ".png") && !ends_in(path, ".svg"))
         return misused("%s: not a kind of figure (expected a name ending in .png or .svg)", path);
+    const char *slash = strrchr(path, '/');
+    char folder[PATH_BYTES];
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 1,
+             slash ? path : ".");
+    if (access(folder, W_OK) != 0) {
+        say("ptie: %s: cannot create: %s", path, strerror(errno));
+        return FAILED;
+    }
     if (force || access(path, F_OK) != 0) return GO_ON;
     say("ptie: %s: exists already (use -f to overwrite)", path);
     return FAILED;

@@ -38,15 +38,38 @@ static ptie_status add_map(maps *m, const char *path, int64_t frame, ptie_panel 
     return status;
 }
 
+/* The data set that the rig names is one of an HDF5 file. */
+static void path_of_plus(char path[PATH_BYTES], const ptie_run_params *run) {
+    ptie_recording *recording;
+    const char *inside = strstr(run->plus, ":/") ? "" : run->rig->plus;
+    if (inside[0] && ptie_recording_open(&recording, run->plus) == PTIE_OK) {
+        if (strcmp(ptie_recording_get_info(recording)->format, "HDF5") != 0) inside = "";
+        ptie_recording_close(recording);
+    }
+    snprintf(path, PATH_BYTES, "%s%s%s", run->plus, inside[0] ? ":" : "", inside);
+}
+
+int check_maps_frame(const ptie_run_params *run, int64_t frame) {
+    char path[PATH_BYTES];
+    ptie_recording *recording;
+    path_of_plus(path, run);
+    if (ptie_recording_open(&recording, path) != PTIE_OK) return GO_ON; /* the run says why */
+    int64_t frames = ptie_recording_get_info(recording)->frames, taken = run->count;
+    ptie_recording_close(recording);
+    if (taken == 0 && run->first < frames) taken = (frames - run->first - 1) / run->step + 1;
+    if (taken == 0 || frame < taken) return GO_ON;
+    return misused("--figure-frame: expected 0..%lld of the frames processed, or -1, found %lld",
+                   (long long)taken - 1, (long long)frame);
+}
+
 static ptie_status collect(maps *m, const ptie_run_params *run, int64_t frame, double pixel_m) {
     char path[PATH_BYTES];
     int64_t recorded = run->first + frame * run->step;
-    const char *inside = strstr(run->plus, ":/") ? "" : run->rig->plus;
     ptie_panel intensity = {
         .title = "intensity", .colormap = PTIE_GRAY, .pixel_m = pixel_m / run->rig->binning};
     ptie_panel phase = {.unit = "rad", .colormap = PTIE_DIVERGING, .pixel_m = pixel_m};
 
-    snprintf(path, sizeof path, "%s%s%s", run->plus, inside[0] ? ":" : "", inside);
+    path_of_plus(path, run);
     ptie_status status = add_map(m, path, recorded, intensity);
     phase.title = "TIE phase";
     snprintf(path, sizeof path, "%s:/entry/data/phase", run->output);

@@ -8,4 +8,8 @@
    there are.  `frame` counts the frames of the run. */
 ptie_status draw_maps(const char *path, const ptie_run_params *run, int64_t frame, double pixel_m);
 
+/* Finds out before the run whether it will have that frame.  GO_ON, or the exit code after a
+ * message. */
+int check_maps_frame(const ptie_run_params *run, int64_t frame);
+
 #endif

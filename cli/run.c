@@ -153,11 +153,10 @@ static ptie_status compute_run(settings *s, const char *name, ptie_run_summary *
     progress_bar progress;
     ptie_ctx *ctx = NULL;
     ptie_model *model = NULL;
-    ptie_status status = ptie_rig_load(&s->rig, s->rig_path);
-    if (status == PTIE_OK && s->model_path) status = ptie_model_load(&model, s->model_path);
+    ptie_status status = PTIE_OK;
+    if (s->model_path) status = ptie_model_load(&model, s->model_path);
     if (status == PTIE_OK) status = open_context(&ctx, &s->compute);
     if (status == PTIE_OK) {
-        s->params.rig = &s->rig;
         s->params.model = model;
         s->params.provenance = s->provenance;
         progress_start(&progress, s->compute.progress, name, "frames");
@@ -183,8 +182,12 @@ static int pipeline(bool with_model, int argc, char **argv) {
     ptie_run_params_init(&s.params);
     int code = parse(&s, name, with_model, argc, argv);
     if (code != GO_ON) return code;
+    ptie_status status = ptie_rig_load(&s.rig, s.rig_path);
+    if (status != PTIE_OK) return failed(status);
+    s.params.rig = &s.rig;
+    if (s.figure && (code = check_maps_frame(&s.params, s.figure_frame)) != GO_ON) return code;
     s.provenance = joined_command(argc, argv);
-    ptie_status status = compute_run(&s, name, &summary);
+    status = compute_run(&s, name, &summary);
     free(s.provenance);
     return status == PTIE_OK ? DONE : failed(status);
 }

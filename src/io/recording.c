@@ -101,6 +101,11 @@ ptie_status ptie_io_open(ptie_recording **out, const char *path) {
     return PTIE_OK;
 }
 
+bool ptie_io_has_data_sets(const char *path) {
+    const ptie_reader *reader;
+    return find_reader(&reader, path, "") == PTIE_OK && reader->has_data_sets;
+}
+
 void ptie_io_close(ptie_recording *recording) {
     if (!recording) return;
     if (recording->reader) recording->reader->close(recording->state);

@@ -12,6 +12,9 @@ void ptie_io_close(ptie_recording *recording); /* NULL is fine */
 const ptie_recording_info *ptie_io_info(const ptie_recording *recording);
 ptie_status ptie_io_read(ptie_recording *recording, int64_t frame, float *data);
 
+/* Is `path` a file that holds several data sets, none of which it names ("jet.h5")? */
+bool ptie_io_has_data_sets(const char *path);
+
 ptie_status ptie_io_create(ptie_writer **out, const char *path, const char *name,
                            const ptie_recording_info *info, bool overwrite);
 ptie_status ptie_io_append(ptie_writer *writer, const float *frame);

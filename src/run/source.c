@@ -17,10 +17,11 @@ struct ptie_source {
     float *reference; /* binned no-flow frame, or NULL */
 };
 
-/* "file.h5" and the rig's "/entry/data/plus" make "file.h5:/entry/data/plus". */
+/* "file.h5" and the rig's "/entry/data/plus" make "file.h5:/entry/data/plus"; a file of another kind is the
+   plane itself. */
 static ptie_status open_plane(ptie_recording **out, const char *path, const char *dataset) {
     char full[MAX_PATH_BYTES];
-    if (dataset[0] != '/' || strstr(path, ":/")) return ptie_io_open(out, path);
+    if (dataset[0] != '/' || !ptie_io_has_data_sets(path)) return ptie_io_open(out, path);
     int length = snprintf(full, sizeof full, "%s:%s", path, dataset);
     if (length >= MAX_PATH_BYTES) return PTIE_FAIL(PTIE_EINVAL, "%s: path too long", path);
     return ptie_io_open(out, full);
@@ -46,6 +47,9 @@ static ptie_status open_beside_plus(ptie_recording **out, const ptie_source *sou
                                       "the rig's [planes])", name);
     char beside[MAX_PATH_BYTES];
     if (!path) { /* another data set of the file that holds plus */
+        if (strcmp(ptie_io_info(source->plus)->format, "HDF5") != 0)
+            return PTIE_FAIL(PTIE_EINVAL, "run: plane '%s' is missing (expected a recording of its own, since "
+                                          "%s has one plane)", name, params->plus);
         const char *inside = strstr(params->plus, ":/");
         size_t length = inside ? (size_t)(inside - params->plus) : strlen(params->plus);
         if (length >= sizeof beside) return PTIE_FAIL(PTIE_EINVAL, "%s: path too long", params->plus);
@@ -82,8 +86,22 @@ static ptie_status read_reference(ptie_source *source, const ptie_run_params *pa
     return status;
 }
 
+/* A recording that the layout has no use for is a mistake in it or in the rig. */
+static ptie_status check_planes(const ptie_run_params *params) {
+    static const char *const layouts[] = {"pair", "triple", "reference"};
+    const ptie_planes planes = params->rig->planes;
+    const char *unused = NULL;
+    if (params->zero && planes != PTIE_PLANES_TRIPLE) unused = "plane 'zero'";
+    if (params->minus && planes == PTIE_PLANES_REFERENCE) unused = "plane 'minus'";
+    if (params->reference && planes != PTIE_PLANES_REFERENCE) unused = "a no-flow reference";
+    if (!unused) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EINVAL, "run: %s has no place in the rig's layout (expected the planes of '%s')", unused,
+                     layouts[planes]);
+}
+
 static ptie_status open_planes(ptie_source *source, const ptie_run_params *params) {
     const ptie_rig *rig = params->rig;
+    PTIE_TRY(check_planes(params));
     PTIE_TRY(open_plane(&source->plus, params->plus, rig->plus));
     const ptie_recording_info *info = ptie_io_info(source->plus);
     source->width = info->width_px;

@@ -31,6 +31,23 @@ An existing figure stops the work before it begins
   $ ls
   curves.png
 
+So does a figure without a folder, or of a frame that will not be there
+  $ ptie train --preset paper -o m.safetensors --figure nowhere/curves.png
+  ! ptie: nowhere/curves.png: cannot create: No such file or directory
+  [1]
+  $ ptie simulate jet -o jet.h5 --size 32 --frames 5
+  ! jet.h5: 5 frames of 32 x 32 px with the truth; rig in jet.ini
+  $ ptie reconstruct --rig jet.ini jet.h5 -o phase.h5 --figure frame.png --figure-frame 2 --step 3
+  ! ptie: --figure-frame: expected 0..1 of the frames processed, or -1, found 2
+  [2]
+  $ ptie reconstruct --rig jet.ini jet.h5 -o phase.h5 --figure frame.png --figure-frame 1 --step 3 | head -1
+  2 frames of 32 x 32 px, 20 um each, in * s (* frames/s) (glob)
+  $ ls
+  frame.png
+  jet.h5
+  jet.ini
+  phase.h5
+
 A figure needs an ending that is known
   $ ptie simulate --gallery gallery.pdf
   ! ptie: gallery.pdf: not a kind of figure (expected a name ending in .png or .svg)

@@ -96,6 +96,26 @@ A preset with an unknown key
   $ ls
   bad.ini
 
+An incomplete rig is no preset
+  $ printf '[optics]\nwavelength = 532 nm\n' > bad.ini
+  $ ptie info bad.ini
+  ! ptie: bad.ini: missing key 'pixel' in [optics] (expected a length such as 532 nm or 10 mm)
+  [2]
+
+Planes that the layout does not use
+  $ $TESTS/npy a.npy 2 32 32
+  $ printf '[optics]\nwavelength = 532 nm\npixel = 20 um\ndefocus = 10 mm\n' > rig.ini
+  $ ptie reconstruct --rig rig.ini --plus a.npy --zero a.npy --minus a.npy -o phase.h5
+  ! ptie: run: plane 'zero' has no place in the rig's layout (expected the planes of 'pair')
+  [2]
+  $ ptie reconstruct --rig rig.ini --plus a.npy --minus a.npy --reference a.npy -o phase.h5
+  ! ptie: run: a no-flow reference has no place in the rig's layout (expected the planes of 'pair')
+  [2]
+  $ printf '[planes]\nlayout = reference\n' >> rig.ini
+  $ ptie reconstruct --rig rig.ini --plus a.npy --minus a.npy --reference a.npy -o phase.h5
+  ! ptie: run: plane 'minus' has no place in the rig's layout (expected the planes of 'reference')
+  [2]
+
 Planes of different sizes or lengths
   $ $TESTS/npy a.npy 2 32 32; $TESTS/npy b.npy 2 32 30; $TESTS/npy c.npy 1 32 32
   $ printf '[optics]\nwavelength = 532 nm\npixel = 20 um\ndefocus = 10 mm\n' > rig.ini

@@ -141,6 +141,19 @@ Frames of a subset are compared with the truth of the same frames
   ! ptie: short.h5:/entry/truth/phase: has no truth for frame 5 of the recording (found 5 frames)
   [1]
 
+A rig's data sets are those of HDF5 files; planes in other files are what they are
+  $ ptie simulate jet -o jet.h5 --size 64 --frames 2
+  ! jet.h5: 2 frames of 64 x 64 px with the truth; rig in jet.ini
+  $ grep -v entry jet.ini > plain.ini
+  $ $TESTS/npy plus.npy 2 64 64; $TESTS/npy minus.npy 2 64 64 other
+  $ ptie reconstruct --rig plain.ini --plus plus.npy --minus minus.npy -o a.h5 | tail -n +3 > a.txt
+  $ ptie reconstruct --rig jet.ini --plus plus.npy --minus minus.npy -o b.h5 --figure b.png | tail -n +3 | diff a.txt -
+  $ wc -l < a.txt
+  5
+  $ ptie reconstruct --rig jet.ini plus.npy -o c.h5
+  ! ptie: run: plane 'minus' is missing (expected a recording of its own, since plus.npy has one plane)
+  [2]
+
 Threads do not change a byte
   $ ptie dataset -T 1 -p $TESTS/small.ini -n 9 -o d1.h5
   ! d1.h5: 9 pairs of preset */small.ini, seed 1 (glob)
@@ -173,6 +186,8 @@ A data set file and its preset give the same scores
   ! m.safetensors: best epoch 1 of 1: validation loss *, PSNR * dB, MAE * (glob)
   $ ptie dataset -p $TESTS/small.ini -n 20 -o d.h5
   ! d.h5: 20 pairs of preset */small.ini, seed 1 (glob)
+  $ cp d.h5 d.hdf5; ptie info d.hdf5 | head -1
+  kind        data set
   $ ptie info d.h5
   kind        data set
   size        32 x 32 px
@@ -186,6 +201,9 @@ A data set file and its preset give the same scores
 
 A preset prints as a file that reads back
   $ ptie info paper > mine.ini
+  $ ptie info paper --json | python3 -c 'import json, sys; d = json.load(sys.stdin); print(*d); print(d["text"], end="")' > json.ini
+  $ head -1 json.ini; tail -n +2 json.ini | cmp - mine.ini
+  kind text
   $ ptie info mine.ini > again.ini
   $ cmp mine.ini again.ini
 
