@@ -27,6 +27,7 @@ int denoise_command(int argc, char **argv);
 int run_command(int argc, char **argv);
 int metrics_command(int argc, char **argv);
 int info_command(int argc, char **argv);
+int bench_command(int argc, char **argv);
 
 /* One line on stderr, "ptie: ...".  Returns MISUSED. */
 int misused(const char *format, ...) PTIE_PRINTF(1, 2);

@@ -5,7 +5,7 @@
 
 #include <ptie/export.h>
 
-enum { MOST_FACTS = 32, FACT_BYTES = 256 };
+enum { MOST_FACTS = 32, FACT_BYTES = 1024 };
 
 typedef struct facts {
     struct {

@@ -20,19 +20,31 @@ static void add_quantity(facts *f, const char *name, double value, ptie_quantity
     add_number(f, name, value, "%s", ptie_print_quantity(text, strtod(digits, NULL), quantity));
 }
 
-static ptie_status describe_machine(facts *f) {
-    ptie_ctx *ctx;
-    ptie_status status = ptie_ctx_create(&ctx, NULL);
-    if (status != PTIE_OK) return status;
+/* "a, b, c" */
+static void add_names(facts *f, const char *name, const char *(*name_of)(int32_t which)) {
     char names[FACT_BYTES] = "";
     size_t used = 0;
-    add_text(f, "version", "%s", ptie_version());
-    add_text(f, "kernels", "%s", ptie_ctx_cpu(ctx));
-    add_number(f, "threads", ptie_ctx_threads(ctx), "%d", ptie_ctx_threads(ctx));
-    for (int32_t i = 0; ptie_preset_name(i); i++)
+    for (int32_t i = 0; name_of(i) && used < sizeof names; i++)
         used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "",
-                                 ptie_preset_name(i));
-    add_text(f, "presets", "%s", names);
+                                 name_of(i));
+    add_text(f, name, "%s", names);
+}
+
+static ptie_status describe_machine(facts *f) {
+    ptie_ctx *ctx;
+    ptie_machine machine;
+    ptie_status status = ptie_ctx_create(&ctx, NULL);
+    if (status != PTIE_OK) return status;
+    ptie_machine_describe(&machine);
+    add_text(f, "version", "%s", ptie_version());
+    add_text(f, "commit", "%s", machine.commit);
+    add_text(f, "compiler", "%s", machine.compiler);
+    add_text(f, "processor", "%s", machine.processor);
+    add_number(f, "threads", ptie_ctx_threads(ctx), "%d", ptie_ctx_threads(ctx));
+    add_text(f, "level", "%s", ptie_ctx_cpu(ctx));
+    add_names(f, "levels", ptie_level_name);
+    add_names(f, "kernels", ptie_kernel_name);
+    add_names(f, "presets", ptie_preset_name);
     ptie_ctx_free(ctx);
     return PTIE_OK;
 }

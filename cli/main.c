@@ -20,6 +20,7 @@ static const command commands[] = {
     {"run", "recording -> phase -> denoised phase -> metrics, in one pass", run_command},
     {"metrics", "MGM, SBR, BNS and CNR over frames and regions", metrics_command},
     {"info", "what is in a file, a model, a preset, this machine", info_command},
+    {"bench", "how fast all of it is on this machine", bench_command},
 };
 
 static void print_line(const char *prefix, const char *format, va_list arguments) {

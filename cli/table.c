@@ -42,6 +42,15 @@ void table_print(const table *t) {
     }
 }
 
+void table_print_markdown(const table *t) {
+    for (int r = 0; r < t->rows; r++) {
+        for (int c = 0; c < t->columns; c++) printf("| %s ", t->cell[r][c]);
+        printf("|\n");
+        for (int c = 0; r == 0 && c < t->columns; c++) printf(c ? "|--:" : "|:--");
+        if (r == 0) printf("|\n");
+    }
+}
+
 void stat_text(char text[CELL_BYTES], ptie_stat stat) {
     if (isnan(stat.mean)) {
         snprintf(text, CELL_BYTES, "-");

@@ -5,7 +5,7 @@
 
 #include <ptie/run.h>
 
-enum { TABLE_ROWS = 32, TABLE_COLUMNS = 8, CELL_BYTES = 64 };
+enum { TABLE_ROWS = 128, TABLE_COLUMNS = 8, CELL_BYTES = 64 };
 
 typedef struct table {
     char cell[TABLE_ROWS][TABLE_COLUMNS][CELL_BYTES];
@@ -15,6 +15,8 @@ typedef struct table {
 /* Sets a cell; the table grows to hold it. */
 void table_set(table *table, int row, int column, const char *format, ...) PTIE_PRINTF(4, 5);
 void table_print(const table *table);
+/* The same for a Markdown file; row 0 is its heading. */
+void table_print_markdown(const table *table);
 
 /* "0.0738 ± 0.0124", with three digits of the larger of the two; "-" where there is no mean. */
 void stat_text(char text[CELL_BYTES], ptie_stat stat);

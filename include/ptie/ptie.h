@@ -20,10 +20,12 @@
 #ifndef PTIE_PTIE_H
 #define PTIE_PTIE_H
 
+#include <ptie/bench.h>
 #include <ptie/context.h>
 #include <ptie/dataset.h>
 #include <ptie/figure.h>
 #include <ptie/flow.h>
+#include <ptie/machine.h>
 #include <ptie/metrics.h>
 #include <ptie/model.h>
 #include <ptie/optics.h>

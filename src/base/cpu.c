@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/cpu.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/utsname.h>
 
 #include "base/text.h"
 
@@ -22,6 +24,21 @@ ptie_cpu_level ptie_cpu_detect(void) {
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return PTIE_CPU_AVX2;
 #endif
     return PTIE_CPU_SCALAR;
+}
+
+void ptie_cpu_describe(char *text, size_t bytes) {
+    struct utsname system;
+    char line[256];
+    snprintf(text, bytes, "%s", uname(&system) == 0 ? system.machine : "unknown");
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    while (file && fgets(line, sizeof line, file)) {
+        const char *colon = strchr(line, ':');
+        if (strncmp(line, "model name", 10) != 0 || !colon) continue;
+        const char *name = colon + 1 + strspn(colon + 1, " \t");
+        snprintf(text, bytes, "%.*s", (int)strcspn(name, "\n"), name);
+        break;
+    }
+    if (file) fclose(file);
 }
 
 ptie_status ptie_cpu_choose(ptie_cpu_level *out, const char *name) {

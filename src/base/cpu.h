@@ -15,6 +15,8 @@ typedef enum ptie_cpu_level {
 /* Highest level the processor and the operating system support. */
 ptie_cpu_level ptie_cpu_detect(void);
 const char *ptie_cpu_name(ptie_cpu_level level);
+/* The processor as it names itself, or its architecture. */
+void ptie_cpu_describe(char *text, size_t bytes);
 /* "auto" or NULL: what the environment's PTIE_CPU says, else ptie_cpu_detect().  PTIE_ENAME for an unknown
    name or a level this machine lacks. */
 ptie_status ptie_cpu_choose(ptie_cpu_level *out, const char *name);

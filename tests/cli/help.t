@@ -16,6 +16,7 @@ The overview
     run          recording -> phase -> denoised phase -> metrics, in one pass
     metrics      MGM, SBR, BNS and CNR over frames and regions
     info         what is in a file, a model, a preset, this machine
+    bench        how fast all of it is on this machine
   
   'ptie help COMMAND' shows examples and options of a command.
 
@@ -399,7 +400,44 @@ info
         --json                as JSON
     -h, --help                this text
 
+bench
+  $ ptie help bench
+  Measures how fast this machine is at every part: kernels, inference, training,
+  generation, solving, the whole pipeline.
+  
+  Examples:
+    # everything; about two minutes
+    ptie bench
+  
+    # the network alone, measured longer, on one thread
+    ptie bench --only inference,training --time 5s --threads 1
+  
+    # the kernels of another instruction set, as JSON
+    ptie bench --only peak,kernels --cpu avx2 --json -
+  
+  Usage:
+    ptie bench [options]
+  
+  Options:
+        --only GROUP,...      measure these groups only
+        --time TIME           of one measurement (default: 1 s)
+        --json FILE           also write the results as JSON; - prints them
+                              instead of the table
+        --markdown            print the table as Markdown
+    -f, --force               replace existing output
+    -T, --threads N           worker threads; 0 = all processors (default: 0)
+        --cpu LEVEL           auto, scalar, avx2 or avx512 (default: auto)
+        --progress HOW        on stderr; auto is a bar on a terminal (auto, bar,
+                              plain, json, none; default: auto)
+    -h, --help                this text
+  
+  Groups: peak, kernels, family, inference, training, generation, solving, run.
+  Median and range over the samples of a measurement. GFLOP/s count the
+  operations of the direct formulas, a multiply-add as two; their share is that
+  of the machine's best rate of multiply-adds on as many threads, measured after
+  every sample. Nothing else should run meanwhile.
+
 No line is longer than a terminal
-  $ for c in simulate dataset train evaluate reconstruct denoise run metrics info; do
+  $ for c in simulate dataset train evaluate reconstruct denoise run metrics info bench; do
   >   ptie help $c
   > done | awk 'length > 79'

@@ -219,9 +219,14 @@ The gallery is a figure
 
 The machine
   $ ptie info
-  version  0.1.0
-  kernels  * (glob)
-  threads  * (glob)
-  presets  paper, realistic
+  version    0.1.0
+  commit     * (glob)
+  compiler   * (glob)
+  processor  * (glob)
+  threads    * (glob)
+  level      * (glob)
+  levels     scalar* (glob)
+  kernels    conv3x3* (glob)
+  presets    paper, realistic
   $ ptie info --json | python3 -c 'import json, sys; print(sorted(json.load(sys.stdin)))'
-  ['kernels', 'presets', 'threads', 'version']
+  ['commit', 'compiler', 'kernels', 'level', 'levels', 'presets', 'processor', 'threads', 'version']

@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Repeats, times, compares with the peak. */
+#include "bench/bench.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/clock.h"
+#include "kernel/kernel.h"
+
+/* A sample takes this part of a measurement's time. */
+#define SAMPLE_SHARE (1.0 / 20)
+/* A reading of the peak: short beside a sample, long beside the waking of threads. */
+#define PEAK_S 2e-3
+
+int32_t ptie_bench_threads(const ptie_bench *bench, ptie_bench_mode mode) {
+    return mode == PTIE_BENCH_ONE ? 1 : ptie_pool_threads(bench->engine->pool);
+}
+
+bool ptie_bench_add_sample(ptie_bench_samples *samples, double rate) {
+    assert(samples->count < PTIE_BENCH_SAMPLES);
+    samples->rate[samples->count++] = rate;
+    return samples->count < PTIE_BENCH_SAMPLES;
+}
+
+static int ascending(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+ptie_bench_spread ptie_bench_summarise(double *values, int32_t count) {
+    assert(count >= 1);
+    qsort(values, (size_t)count, sizeof *values, ascending);
+    return (ptie_bench_spread){.median = (values[(count - 1) / 2] + values[count / 2]) / 2,
+                               .low = values[0],
+                               .high = values[count - 1]};
+}
+
+/* `calls` calls of a case, per thread. */
+typedef struct repetition {
+    const ptie_bench_case *measured;
+    int64_t calls;
+} repetition;
+
+static ptie_status repeat(void *context, size_t index, int32_t worker) {
+    (void)index;
+    const repetition *r = context;
+    for (int64_t i = 0; i < r->calls; i++)
+        PTIE_TRY(r->measured->work(r->measured->context, worker));
+    return PTIE_OK;
+}
+
+static ptie_status time_calls(const ptie_bench *bench, const ptie_bench_case *measured,
+                              int64_t calls, double *seconds) {
+    repetition r = {measured, calls};
+    const double start_s = ptie_now_s();
+    if (measured->mode == PTIE_BENCH_EACH)
+        PTIE_TRY(ptie_pool_run(bench->engine->pool, (size_t)ptie_pool_threads(bench->engine->pool),
+                               repeat, &r));
+    else
+        PTIE_TRY(repeat(&r, 0, 0));
+    *seconds = ptie_now_s() - start_s;
+    return PTIE_OK;
+}
+
+/* Units per second, of all threads together. */
+static ptie_status sample_rate(const ptie_bench *bench, const ptie_bench_case *measured,
+                               int64_t calls, double *rate) {
+    const int32_t copies =
+        measured->mode == PTIE_BENCH_EACH ? ptie_pool_threads(bench->engine->pool) : 1;
+    double seconds;
+    PTIE_TRY(time_calls(bench, measured, calls, &seconds));
+    *rate = copies * (double)calls * measured->amount / seconds;
+    return PTIE_OK;
+}
+
+/* Calls that take about `seconds`; what it does to find out also warms caches and clocks. */
+static ptie_status calibrate(const ptie_bench *bench, const ptie_bench_case *measured,
+                             double seconds, int64_t *calls) {
+    double taken = 0;
+    for (*calls = 1; *calls < INT64_MAX / 4; *calls *= 2) {
+        PTIE_TRY(time_calls(bench, measured, *calls, &taken));
+        if (taken >= seconds / 4) break;
+    }
+    *calls = (int64_t)ceil((double)*calls * seconds / fmax(taken, 1e-9));
+    return PTIE_OK;
+}
+
+/* The peak. */
+
+enum { ROUNDS = 2000 }; /* in one call: some microseconds */
+
+static ptie_status multiply_add(void *context, int32_t worker) {
+    const ptie_bench *bench = context;
+    bench->engine->kernels->multiply_add(bench->chains + (size_t)worker * PTIE_CHAIN_FLOATS, 0.999f,
+                                         0.001f, ROUNDS);
+    return PTIE_OK;
+}
+
+ptie_bench_case ptie_bench_peak_case(ptie_bench *bench, const char *name, ptie_bench_mode mode) {
+    ptie_bench_case peak = {.unit = "GFLOP/s",
+                            .mode = mode == PTIE_BENCH_ONE ? PTIE_BENCH_ONE : PTIE_BENCH_EACH,
+                            .amount = 2e-9 * PTIE_CHAIN_FLOATS * ROUNDS,
+                            .work = multiply_add,
+                            .context = bench};
+    snprintf(peak.name, sizeof peak.name, "%s", name);
+    return peak;
+}
+
+ptie_status ptie_bench_calibrate_peak(ptie_bench *bench) {
+    const ptie_bench_case peak = ptie_bench_peak_case(bench, "peak", PTIE_BENCH_ONE);
+    return calibrate(bench, &peak, PEAK_S, &bench->peak_calls);
+}
+
+/* One reading, in GFLOP/s. */
+static ptie_status read_peak(ptie_bench *bench, ptie_bench_mode mode, double *gflops) {
+    const ptie_bench_case peak = ptie_bench_peak_case(bench, "peak", mode);
+    return sample_rate(bench, &peak, bench->peak_calls, gflops);
+}
+
+/* Samples. */
+
+/* Samples until the time has passed or there is no place for more; at least one.  A reading of the
+   peak follows each. */
+static ptie_status take_samples(ptie_bench *bench, const ptie_bench_case *measured,
+                                ptie_bench_samples *samples) {
+    const double start_s = ptie_now_s();
+    double rate, peak = 1;
+    int64_t calls;
+    PTIE_TRY(calibrate(bench, measured, bench->seconds * SAMPLE_SHARE, &calls));
+    do {
+        PTIE_TRY(sample_rate(bench, measured, calls, &rate));
+        if (measured->flops > 0) PTIE_TRY(read_peak(bench, measured->mode, &peak));
+        samples->share[samples->count] = 1e-9 * measured->flops * rate / peak;
+    } while (ptie_bench_add_sample(samples, rate) && ptie_now_s() - start_s < bench->seconds);
+    return PTIE_OK;
+}
+
+/* Work that cannot be interrupted: the peak before and after, the larger of the two. */
+static ptie_status take_own_samples(ptie_bench *bench, const ptie_bench_case *measured,
+                                    ptie_bench_samples *samples) {
+    double before = 0, after = 0;
+    PTIE_TRY(read_peak(bench, measured->mode, &before));
+    PTIE_TRY(measured->sample(bench, measured, samples));
+    PTIE_TRY(read_peak(bench, measured->mode, &after));
+    for (int32_t i = 0; i < samples->count; i++)
+        samples->share[i] = 1e-9 * measured->flops * samples->rate[i] / fmax(before, after);
+    return PTIE_OK;
+}
+
+/* The next place among the results, announced. */
+static ptie_status begin(ptie_bench *bench, const char *name, const char *unit,
+                         ptie_bench_result **result) {
+    char note[128];
+    assert(bench->count < bench->total);
+    snprintf(note, sizeof note, "%s: %s", bench->group, name);
+    PTIE_TRY(ptie_progress_report(bench->progress, bench->count, bench->total, note));
+    const double none = (double)NAN;
+    *result = &bench->results[bench->count++];
+    **result = (ptie_bench_result){.group = bench->group,
+                                   .unit = unit,
+                                   .gflops = none,
+                                   .peak_gflops = none,
+                                   .peak_share = none};
+    snprintf((*result)->name, sizeof(*result)->name, "%s", name);
+    return PTIE_OK;
+}
+
+ptie_status ptie_bench_measure(ptie_bench *bench, const ptie_bench_case *measured) {
+    ptie_bench_result *result;
+    ptie_bench_samples samples = {.count = 0};
+    PTIE_TRY(begin(bench, measured->name, measured->unit, &result));
+    PTIE_TRY((measured->sample ? take_own_samples : take_samples)(bench, measured, &samples));
+    const ptie_bench_spread rate = ptie_bench_summarise(samples.rate, samples.count);
+    result->median = rate.median;
+    result->low = rate.low;
+    result->high = rate.high;
+    result->samples = samples.count;
+    result->threads = ptie_bench_threads(bench, measured->mode);
+    if (measured->flops > 0) {
+        result->gflops = 1e-9 * measured->flops * rate.median;
+        result->peak_share = ptie_bench_summarise(samples.share, samples.count).median;
+        result->peak_gflops = result->gflops / result->peak_share;
+    }
+    return PTIE_OK;
+}
+
+ptie_status ptie_bench_note(ptie_bench *bench, const char *name, const char *unit, double value) {
+    ptie_bench_result *result;
+    PTIE_TRY(begin(bench, name, unit, &result));
+    result->median = result->low = result->high = value;
+    result->samples = 1;
+    result->threads = ptie_pool_threads(bench->engine->pool);
+    return PTIE_OK;
+}
