@@ -2,11 +2,12 @@
 #include "base/ini.h"
 
 #include <assert.h>
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <ini.h>
+#include "base/memory.h"
 
 #define MAX_KEYS 96
 
@@ -146,24 +147,69 @@ static ptie_status set_key(reading *r, const char *section, const char *name, co
     return unknown_name(r, section, name);
 }
 
-/* inih's callback: 0 marks the line as bad.  inih goes on, so only the first failure is kept. */
-static int handle(void *user, const char *section, const char *name, const char *value) {
-    reading *r = user;
-    if (r->status != PTIE_OK) return 0;
-    r->status = set_key(r, section, name, value);
-    return r->status == PTIE_OK;
+/* The text without white space around it; cuts it in place. */
+static char *trimmed(char *text) {
+    while (isspace((unsigned char)*text)) text++;
+    size_t length = strlen(text);
+    while (length > 0 && isspace((unsigned char)text[length - 1])) length--;
+    text[length] = 0;
+    return text;
+}
+
+/* A comment begins the line, or stands behind white space and a semicolon. */
+static void cut_comment(char *line) {
+    if (*line == '#') *line = 0;
+    for (char *c = line; *c; c++)
+        if (*c == ';' && (c == line || isspace((unsigned char)c[-1]))) *c = 0;
+}
+
+static ptie_status not_a_line(reading *r) {
+    snprintf(r->message, sizeof r->message, "expected '[section]', 'key = value' or a comment");
+    return PTIE_EFORMAT;
+}
+
+/* "[section]", "key = value", "key: value", a comment, or nothing. */
+static ptie_status read_line(reading *r, char **section, char *line) {
+    line = trimmed(line);
+    cut_comment(line);
+    line = trimmed(line);
+    if (!*line) return PTIE_OK;
+    if (*line == '[') {
+        char *end = line + strlen(line) - 1;
+        if (*end != ']') return not_a_line(r);
+        *end = 0;
+        *section = line + 1;
+        return PTIE_OK;
+    }
+    char *separator = strpbrk(line, "=:");
+    if (!separator) return not_a_line(r);
+    *separator = 0;
+    return set_key(r, *section, trimmed(line), trimmed(separator + 1));
+}
+
+/* Up to the first bad line, whose number is returned, or 0.  text is cut to pieces. */
+static int read_lines(reading *r, char *text) {
+    char nowhere[] = "", *section = nowhere;
+    if (strncmp(text, "\xef\xbb\xbf", 3) == 0) text += 3; /* the byte order mark of Windows' editors */
+    for (int number = 1; text; number++) {
+        char *line = text, *end = strchr(text, '\n');
+        if (end) *end = 0;
+        text = end ? end + 1 : NULL;
+        r->status = read_line(r, &section, line);
+        if (r->status != PTIE_OK) return number;
+    }
+    return 0;
 }
 
 ptie_status ptie_ini_read(void *target, const ptie_ini_key *keys, size_t count, const char *text,
                           const char *where) {
     assert(count <= MAX_KEYS);
     reading r = {.target = target, .keys = keys, .count = count};
-    int line = ini_parse_string(text, handle, &r);
-    if (r.status != PTIE_OK) return PTIE_FAIL(r.status, "%s:%d: %s", where, line, r.message);
-    if (line < 0) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", where);
-    if (line > 0)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s:%d: expected '[section]', 'key = value' or a comment", where,
-                         line);
+    char *copy = ptie_strdup(text);
+    if (!copy) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", where);
+    const int line = read_lines(&r, copy);
+    ptie_free(copy);
+    if (line > 0) return PTIE_FAIL(r.status, "%s:%d: %s", where, line, r.message);
     for (size_t i = 0; i < count; i++)
         if (keys[i].required && !r.seen[i])
             return PTIE_FAIL(PTIE_EINVAL, "%s: missing key '%s' in [%s] (expected %s)", where,

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* INI files described by a table: one row per key says its place in a struct, its kind and its range.
-   The same table reads a file, checks it, and prints it back. */
+   The same table reads a file, checks it, and prints it back.
+
+     ; a comment, also with # at the start of a line
+     [section]
+     key = value    ; or key: value; lines may be indented and of any length */
 #ifndef PTIE_BASE_INI_H
 #define PTIE_BASE_INI_H
 

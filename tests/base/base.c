@@ -178,6 +178,25 @@ static void ini_says_line_key_and_nearest_name(void **state) {
     assert_fails(ptie_ini_read(&s, keys, KEYS, "garbage\n", "x.ini"), PTIE_EFORMAT, "x.ini:1:");
 }
 
+static void ini_lines_may_be_indented_and_long(void **state) {
+    (void)state;
+    settings s = {0};
+    char text[2000];
+    snprintf(text, sizeof text,
+             "\xef\xbb\xbf[optics] ; a comment\r\n\t wavelength : 532 nm\r\n    noise = 2 %%\n  # another\n"
+             "  [frame]\n  name = a;b # c ; d\n  size = %1000d ; %700d\n  kind=pair", 64, 0);
+    assert_ok(ptie_ini_read(&s, keys, KEYS, text, "x.ini"));
+    assert_near(s.length_m, 532e-9, 1e-22);
+    assert_near(s.noise.high, 0.02, 1e-17);
+    assert_int_equal(s.size, 64);
+    assert_string_equal(s.name, "a;b # c");
+    snprintf(text, sizeof text, "[optics]\n  wavelength = 532 nm\n  nose = 2 %%\n");
+    assert_fails(ptie_ini_read(&s, keys, KEYS, text, "x.ini"), PTIE_ENAME, "x.ini:3: unknown key 'nose'");
+    snprintf(text, sizeof text, "; %0300d\n[optics]\nwavelength = 532 nm ; %0300d\nnoise = %0300d\n", 0, 0, 2);
+    assert_fails(ptie_ini_read(&s, keys, KEYS, text, "x.ini"), PTIE_EFORMAT, "x.ini:4: noise: out of range");
+    assert_fails(ptie_ini_read(&s, keys, KEYS, "[optics\n", "x.ini"), PTIE_EFORMAT, "x.ini:1: expected '[section]'");
+}
+
 static void output_appears_whole_or_not_at_all(void **state) {
     (void)state;
     const char *path = support_temporary("out.txt");
@@ -223,6 +242,7 @@ int main(void) {
         cmocka_unit_test(quantities_print_as_people_write_them),
         cmocka_unit_test(ini_reads_and_prints_a_table),
         cmocka_unit_test(ini_says_line_key_and_nearest_name),
+        cmocka_unit_test(ini_lines_may_be_indented_and_long),
         cmocka_unit_test(output_appears_whole_or_not_at_all),
         cmocka_unit_test(allocation_refuses_products_that_overflow),
     };
