@@ -49,14 +49,18 @@ static double block_mean(const float *map, int32_t width, int32_t x, int32_t y, 
 static double fit_gain(const float *map, const float *measured, int32_t width, int32_t height) {
     const int32_t shorter = width < height ? width : height;
     const int32_t side = shorter >= 16 * BLOCK ? BLOCK : 1, margin = shorter / 16;
+    /* Of the last block with a neighbour; a line of pixels has neighbours along itself only. */
+    const int32_t right = width > 1 ? width - margin - 2 * side : 0;
+    const int32_t bottom = height > 1 ? height - margin - 2 * side : 0;
     double product = 0, square = 0;
-    for (int32_t y = margin; y + 2 * side <= height - margin; y += side)
-        for (int32_t x = margin; x + 2 * side <= width - margin; x += side) {
+    for (int32_t y = margin; y <= bottom; y += side)
+        for (int32_t x = margin; x <= right; x += side) {
             const double map_here = block_mean(map, width, x, y, side);
             const double here = block_mean(measured, width, x, y, side);
             const int32_t next[2][2] = {{x + side, y}, {x, y + side}};
             for (int axis = 0; axis < 2; axis++) {
                 const int32_t *at = next[axis];
+                if (at[0] >= width || at[1] >= height) continue;
                 double d = block_mean(map, width, at[0], at[1], side) - map_here;
                 product += d * (block_mean(measured, width, at[0], at[1], side) - here);
                 square += d * d;
