@@ -5,8 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clones.h"
+
 /* Integer arithmetic, so that the loop vectorises under strict floating point. */
-static bool all_finite(const float *values, size_t count) {
+PTIE_CLONES static bool all_finite(const float *values, size_t count) {
     const uint32_t exponent = 0x7f800000u; /* all ones: NaN or infinity */
     uint32_t bad = 0;
     for (size_t i = 0; i < count; i++) {
@@ -25,6 +27,28 @@ ptie_status ptie_image_finite(const float *image, int32_t width, int32_t height,
     return PTIE_FAIL(PTIE_ENUMERIC,
                      "%s: value is not finite (at x=%zu, y=%zu; expected a number, found %g)", what,
                      i % w, i / w, (double)image[i]);
+}
+
+PTIE_CLONES ptie_extent ptie_image_extent(const float *values, size_t count) {
+    enum { LANES = 16 };
+    float low[LANES], high[LANES];
+    ptie_extent extent = {values[0], values[0]};
+    for (int k = 0; k < LANES; k++) low[k] = high[k] = values[0];
+    size_t i = 0;
+    for (; i + LANES <= count; i += LANES)
+        for (int k = 0; k < LANES; k++) {
+            low[k] = values[i + (size_t)k] < low[k] ? values[i + (size_t)k] : low[k];
+            high[k] = values[i + (size_t)k] > high[k] ? values[i + (size_t)k] : high[k];
+        }
+    for (int k = 0; k < LANES; k++) {
+        extent.low = low[k] < extent.low ? low[k] : extent.low;
+        extent.high = high[k] > extent.high ? high[k] : extent.high;
+    }
+    for (; i < count; i++) {
+        extent.low = values[i] < extent.low ? values[i] : extent.low;
+        extent.high = values[i] > extent.high ? values[i] : extent.high;
+    }
+    return extent;
 }
 
 static int ascending(const void *a, const void *b) {

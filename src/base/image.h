@@ -12,4 +12,10 @@ ptie_status ptie_image_finite(const float *image, int32_t width, int32_t height,
    outside it.  border: scratch for 2 (width + height) values. */
 double ptie_image_border_median(const float *image, int32_t width, int32_t height, float *border);
 
+/* Smallest and largest of `count` >= 1 values. */
+typedef struct ptie_extent {
+    float low, high;
+} ptie_extent;
+ptie_extent ptie_image_extent(const float *values, size_t count);
+
 #endif

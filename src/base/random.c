@@ -4,26 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-#define TWO_PI 6.283185307179586476925
+#include "base/clones.h"
+#include "base/elementary.h"
 
-void ptie_philox(uint32_t out[4], const uint32_t counter[4], const uint32_t key[2]) {
-    uint32_t c0 = counter[0], c1 = counter[1], c2 = counter[2], c3 = counter[3];
-    uint32_t k0 = key[0], k1 = key[1];
-    for (int round = 0; round < 10; round++) {
-        /* Multipliers and Weyl increments of Philox4x32 (Salmon et al. 2011, table 2). */
-        uint64_t p0 = UINT64_C(0xD2511F53) * c0;
-        uint64_t p1 = UINT64_C(0xCD9E8D57) * c2;
-        uint32_t n0 = (uint32_t)(p1 >> 32) ^ c1 ^ k0;
-        uint32_t n2 = (uint32_t)(p0 >> 32) ^ c3 ^ k1;
-        c1 = (uint32_t)p1;
-        c3 = (uint32_t)p0;
-        c0 = n0;
-        c2 = n2;
-        k0 += 0x9E3779B9u;
-        k1 += 0xBB67AE85u;
-    }
-    out[0] = c0, out[1] = c1, out[2] = c2, out[3] = c3;
-}
+#define TWO_PI 6.283185307179586476925
 
 void ptie_random_init(ptie_random *random, uint64_t seed, uint32_t stream, uint64_t sample) {
     memset(random, 0, sizeof *random);
@@ -68,22 +52,36 @@ double ptie_random_normal(ptie_random *random) {
 }
 
 /* Two uniforms to two normals.  24 bits each: the tail ends at sqrt(2 ln 2^24) = 5.8 sigma. */
-static void box_muller(float out[2], uint32_t a, uint32_t b) {
-    float u = ((float)(a >> 8) + 1.0f) * 0x1p-24f; /* (0, 1] */
-    float angle = (float)(b >> 8) * (float)(TWO_PI * 0x1p-24);
-    float radius = sqrtf(-2.0f * logf(u));
-    out[0] = radius * cosf(angle);
-    out[1] = radius * sinf(angle);
+PTIE_INLINE void box_muller(float out[2], uint32_t a, uint32_t b) {
+    const float u = (float)(int32_t)((a >> 8) + 1) * 0x1p-24f; /* (0, 1] */
+    const float radius = sqrtf(-2.0f * ptie_logf(u));
+    float sine, cosine;
+    ptie_turnf((float)(int32_t)(b >> 8) * 0x1p-24f, &sine, &cosine);
+    out[0] = radius * cosine;
+    out[1] = radius * sine;
+}
+
+/* Four normals per block of the generator. */
+PTIE_CLONES static void fill_normals(float *out, size_t blocks, const uint32_t key[2],
+                                     const uint32_t counter[4]) {
+    for (size_t i = 0; i < blocks; i++) {
+        const uint32_t own[4] = {counter[0] + (uint32_t)i, counter[1], counter[2], counter[3]};
+        uint32_t word[4];
+        ptie_philox(word, own, key);
+        box_muller(out + 4 * i, word[0], word[1]);
+        box_muller(out + 4 * i + 2, word[2], word[3]);
+    }
 }
 
 void ptie_random_normals(ptie_random *random, float *out, size_t count) {
-    for (size_t i = 0; i < count; i += 4) {
-        float normal[4];
-        next_block(random);
-        box_muller(normal, random->block[0], random->block[1]);
-        box_muller(normal + 2, random->block[2], random->block[3]);
-        size_t left = count - i < 4 ? count - i : 4;
-        memcpy(out + i, normal, left * sizeof *out);
+    const size_t blocks = count / 4, rest = count % 4;
+    fill_normals(out, blocks, random->key, random->counter);
+    random->counter[0] += (uint32_t)blocks;
+    if (rest) {
+        float last[4];
+        fill_normals(last, 1, random->key, random->counter);
+        random->counter[0]++;
+        memcpy(out + 4 * blocks, last, rest * sizeof *out);
     }
     random->used = 4;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Isotropic filters on a spectrum. */
+#include "base/clones.h"
 #include "fft/plan.h"
 
 size_t ptie_fft_filter_floats(const ptie_fft *fft) {
@@ -18,7 +19,7 @@ void ptie_fft_filter_fill(const ptie_fft *fft, float *filter, double pixel_m,
     }
 }
 
-void ptie_fft_filter_apply(const ptie_fft *fft, float *spectrum, const float *filter) {
+PTIE_CLONES void ptie_fft_filter_apply(const ptie_fft *fft, float *spectrum, const float *filter) {
     const size_t entries = ptie_fft_filter_floats(fft);
     if (ptie_fft_entry_floats(fft) == 1) {
         for (size_t i = 0; i < entries; i++) spectrum[i] *= filter[i];

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/clones.h"
 #include "base/memory.h"
 
 /* Weights of offsets 0 .. radius; they and their mirror images sum to 1. */
@@ -22,7 +23,7 @@ static int32_t mirror(int32_t i, int32_t count) {
     return i < count ? i : period - 1 - i;
 }
 
-static void blur_rows(float *map, int32_t width, int32_t height, const float *weights,
+PTIE_CLONES static void blur_rows(float *map, int32_t width, int32_t height, const float *weights,
                       int32_t radius, float *line) {
     for (int32_t y = 0; y < height; y++) {
         float *row = map + (size_t)y * (size_t)width;
@@ -35,7 +36,7 @@ static void blur_rows(float *map, int32_t width, int32_t height, const float *we
     }
 }
 
-static void blur_columns(float *out, const float *in, int32_t width, int32_t height,
+PTIE_CLONES static void blur_columns(float *out, const float *in, int32_t width, int32_t height,
                          const float *weights, int32_t radius) {
     for (int32_t y = 0; y < height; y++) {
         float *row = out + (size_t)y * (size_t)width;

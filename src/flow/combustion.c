@@ -30,54 +30,63 @@ typedef struct flame {
 } flame;
 
 /* Half-width of a tongue: bulges steepen upwards into mushrooms, a flame closes at its tip. */
-static float half_width(const flame *f, const tongue *t, const ptie_parcel *p) {
+PTIE_INLINE float half_width(const flame *f, const tongue *t, const ptie_parcel *p) {
     float angle = t->wave * p->x - t->phase, up = ptie_smoothstep(p->x / (6 * f->stream.radius));
-    float bulging = 1 + f->bulge * up * sinf(angle + 0.7f * sinf(angle));
+    float bulging = 1 + f->bulge * up * ptie_sinf(angle + 0.7f * ptie_sinf(angle));
     float taper = 0.6f + 0.4f * ptie_smoothstep(p->x / f->foot);
-    if (f->tip > 0) {
-        float rest = 1 - p->x / (f->tip * t->strength);
-        taper *= rest > 0 ? sqrtf(rest) : 0;
-    }
-    return t->size * bulging * taper;
+    float rest = f->tip > 0 ? 1 - p->x / (f->tip * t->strength) : 1;
+    return t->size * bulging * taper * sqrtf(ptie_maxf(rest, 0));
 }
 
 /* Position across a tongue, in its own half-widths; the half-width goes to *width (units). */
-static float across(const flame *f, const tongue *t, const ptie_parcel *p, float *width) {
+PTIE_INLINE float across(const flame *f, const tongue *t, const ptie_parcel *p, float *width) {
     float half = half_width(f, t, p);
     *width = half * p->width;
-    return (p->across - t->offset - t->lean * p->x / p->width) / fmaxf(half, 0.02f);
+    return (p->across - t->offset - t->lean * p->x / p->width) / ptie_maxf(half, 0.02f);
 }
 
-static float bright_at(const void *flow, float x, float y) {
-    const flame *f = flow;
-    if (x < 0) return 0;
-    ptie_parcel p = ptie_stream_at(&f->stream, x, y);
-    if (fabsf(p.across) > 6) return 0;
-    float value = 0, width;
-    for (int i = 0; i < f->count; i++) {
-        float r = fabsf(across(f, &f->tongues[i], &p, &width));
-        float thin = f->sheet / fmaxf(width, 0.2f * f->sheet);
-        if (r > 1 + 4 * thin || width < 0.1f * f->sheet) continue;
-        float inside = f->glow * ptie_rise((1 - r) / thin);
-        float front = (1 - f->glow) * ptie_bell((r - 1) / thin);
-        value = fmaxf(value, f->tongues[i].strength * (inside + front));
-    }
-    return value * f->cooling / (f->cooling + x) * fmaxf(0, 1 + 0.3f * p.gust) *
+/* The front and the inside of a tongue. */
+PTIE_INLINE float tongue_at(const flame *f, const tongue *t, const ptie_parcel *p) {
+    float width, r = fabsf(across(f, t, p, &width));
+    float thin = f->sheet / ptie_maxf(width, 0.2f * f->sheet);
+    float inside = f->glow * ptie_rise((1 - r) / thin);
+    float front = (1 - f->glow) * ptie_bell((r - 1) / thin);
+    return width < 0.1f * f->sheet ? 0 : t->strength * (inside + front);
+}
+
+/* What all tongues share: cooling, gusts, the foot. */
+PTIE_INLINE float shared_at(const flame *f, float gusts, float gust, float x) {
+    return f->cooling / (f->cooling + ptie_maxf(x, 0)) * ptie_maxf(0, 1 + gusts * gust) *
            ptie_smoothstep(x / f->foot);
 }
 
-static float hot_at(const void *flow, float x, float y) {
+PTIE_CLONES static void bright_line(const void *flow, float *value, const float *x,
+                                    const float *y) {
     const flame *f = flow;
-    if (x < 0) return 0;
-    ptie_parcel p = ptie_stream_at(&f->stream, x, y);
-    if (fabsf(p.across) > 6) return 0;
-    float path = 0, width;
-    for (int i = 0; i < f->count; i++) {
-        float r = across(f, &f->tongues[i], &p, &width);
-        path += f->tongues[i].strength * width * ptie_projection_at(&f->disc, r);
+    ptie_parcels parcels;
+    ptie_stream_line(&f->stream, &parcels, x, y);
+    for (int i = 0; i < PTIE_LINE; i++) value[i] = 0;
+    for (int n = 0; n < f->count; n++)
+        for (int i = 0; i < PTIE_LINE; i++) {
+            ptie_parcel p = ptie_parcel_of(&parcels, i);
+            value[i] = ptie_maxf(value[i], tongue_at(f, &f->tongues[n], &p));
+        }
+    for (int i = 0; i < PTIE_LINE; i++) value[i] *= shared_at(f, 0.3f, parcels.gust[i], x[i]);
+}
+
+PTIE_CLONES static void hot_line(const void *flow, float *value, const float *x, const float *y) {
+    const flame *f = flow;
+    ptie_parcels parcels;
+    ptie_stream_line(&f->stream, &parcels, x, y);
+    for (int i = 0; i < PTIE_LINE; i++) {
+        ptie_parcel p = ptie_parcel_of(&parcels, i);
+        float path = 0, width;
+        for (int n = 0; n < f->count; n++) {
+            float r = across(f, &f->tongues[n], &p, &width);
+            path += f->tongues[n].strength * width * ptie_projection_at(&f->disc, r);
+        }
+        value[i] = f->rad * path * shared_at(f, 0.15f, p.gust, x[i]);
     }
-    float hot = f->cooling / (f->cooling + x);
-    return f->rad * hot * path * fmaxf(0, 1 + 0.15f * p.gust) * ptie_smoothstep(x / f->foot);
 }
 
 static void draw_tongues(flame *f, const ptie_scene *scene, ptie_random *random) {
@@ -114,7 +123,7 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     ptie_axes axes = ptie_axes_draw(scene, random, PTIE_HEADING_UP, -0.15, 0.2, 0.35);
     flame f = {0};
     PTIE_TRY(draw_flame(&f, scene, random, &axes));
-    ptie_paint(map, scene, &axes, bright_at, &f);
+    ptie_paint(map, scene, &axes, bright_line, &f);
     ptie_stream_free(&f.stream);
     return PTIE_OK;
 }
@@ -129,7 +138,7 @@ static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *ra
     f.rad = (float)(path * ptie_ambient_refractivity() * (1 / hotter - 1));
     ptie_projection_fill_disc(&f.disc, edge);
     PTIE_TRY(draw_flame(&f, scene, random, &axes));
-    ptie_paint(map, scene, &axes, hot_at, &f);
+    ptie_paint(map, scene, &axes, hot_line, &f);
     ptie_stream_free(&f.stream);
     return PTIE_OK;
 }

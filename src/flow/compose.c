@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "base/image.h"
 #include "base/memory.h"
 #include "flow/blur.h"
 #include "flow/morphology.h"
@@ -17,24 +18,11 @@ static ptie_scene scene_of(const ptie_flow_params *params) {
                         .time_s = params->time_s};
 }
 
-typedef struct extent {
-    float low, high;
-} extent;
-
-static extent extent_of(const float *map, size_t count) {
-    extent e = {map[0], map[0]};
-    for (size_t i = 1; i < count; i++) {
-        e.low = map[i] < e.low ? map[i] : e.low;
-        e.high = map[i] > e.high ? map[i] : e.high;
-    }
-    return e;
-}
-
 /* Scales to [0, 1].  A map without contrast (everything left the frame) becomes a ramp, so that no
    sample is constant. */
-static void normalise(float *map, const ptie_scene *scene) {
+PTIE_CLONES static void normalise(float *map, const ptie_scene *scene) {
     size_t width = (size_t)scene->width, count = width * (size_t)scene->height;
-    extent e = extent_of(map, count);
+    ptie_extent e = ptie_image_extent(map, count);
     float range = e.high - e.low;
     if (!(range > 1e-6f))
         for (size_t i = 0; i < count; i++) map[i] = (float)(i % width) / (float)(width - 1);
@@ -93,19 +81,24 @@ static member member_draw(const ptie_flow_mix *mix, ptie_random *random) {
     return m;
 }
 
-static void join(float *map, const float *other, size_t count, const member *m) {
-    for (size_t i = 0; i < count; i++) {
-        float value = m->height * other[i];
-        switch (m->blend) {
-        case BLEND_MAXIMUM: map[i] = value > map[i] ? value : map[i]; break;
-        case BLEND_ENVELOPE: map[i] = map[i] * (0.25f + value) + 0.25f * value; break;
-        default: map[i] += value; break;
-        }
+PTIE_CLONES static void join(float *map, const float *other, size_t count, const member *m) {
+    const float height = m->height;
+    switch (m->blend) {
+    case BLEND_MAXIMUM:
+        for (size_t i = 0; i < count; i++) map[i] = ptie_maxf(map[i], height * other[i]);
+        break;
+    case BLEND_ENVELOPE:
+        for (size_t i = 0; i < count; i++)
+            map[i] = map[i] * (0.25f + height * other[i]) + 0.25f * (height * other[i]);
+        break;
+    default:
+        for (size_t i = 0; i < count; i++) map[i] += height * other[i];
     }
 }
 
-static void add_ramp(float *map, const ptie_scene *scene, double share, double angle) {
-    extent e = extent_of(map, (size_t)scene->width * (size_t)scene->height);
+PTIE_CLONES static void add_ramp(float *map, const ptie_scene *scene, double share, double angle) {
+    ptie_extent e =
+        ptie_image_extent(map, (size_t)scene->width * (size_t)scene->height);
     double side = fabs(cos(angle)) * scene->width + fabs(sin(angle)) * scene->height;
     double slope = share * (double)(e.high - e.low) / side;
     float slope_x = (float)(slope * cos(angle)), slope_y = (float)(slope * sin(angle));

@@ -14,16 +14,17 @@ typedef struct plume {
 } plume;
 
 /* Diffusion widens with the square root of the distance, unlike the stream's linear spread. */
-static float at(const void *flow, float x, float y) {
+PTIE_CLONES static void line(const void *flow, float *value, const float *x, const float *y) {
     const plume *p = flow;
-    float behind = x + 0.5f * p->lag;
-    if (behind <= 0) return 0;
-    ptie_parcel parcel = ptie_stream_at(&p->stream, x, y);
-    float growth = sqrtf(1 + fmaxf(parcel.x, 0) / p->lag);
-    float width = p->stream.radius * growth;
-    float value =
-        ptie_bell(parcel.across * parcel.width / width) * ptie_smoothstep(behind / p->lag);
-    return p->height * value / (p->fade > 1 ? growth * growth : growth);
+    ptie_parcels parcels;
+    ptie_stream_line(&p->stream, &parcels, x, y);
+    for (int i = 0; i < PTIE_LINE; i++) {
+        ptie_parcel parcel = ptie_parcel_of(&parcels, i);
+        float growth = sqrtf(1 + ptie_maxf(parcel.x, 0) / p->lag);
+        float r = parcel.across * parcel.width / (p->stream.radius * growth);
+        float begun = ptie_smoothstep((x[i] + 0.5f * p->lag) / p->lag);
+        value[i] = p->height * ptie_bell(r) * begun / (p->fade > 1 ? growth * growth : growth);
+    }
 }
 
 static ptie_status draw_plume(float *map, const ptie_scene *scene, ptie_random *random,
@@ -35,7 +36,7 @@ static ptie_status draw_plume(float *map, const ptie_scene *scene, ptie_random *
     PTIE_TRY(ptie_stream_draw(&p.stream, scene, random, &ranges, (double)axes.end));
     p.height *= p.stream.radius;
     p.stream.reach = 5 * sqrtf(1 + axes.end / p.lag);
-    ptie_paint(map, scene, &axes, at, &p);
+    ptie_paint(map, scene, &axes, line, &p);
     ptie_stream_free(&p.stream);
     return PTIE_OK;
 }

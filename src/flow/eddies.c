@@ -11,12 +11,15 @@ typedef struct envelope {
     float radius, spread, decay, base;
 } envelope;
 
-static float envelope_at(const void *flow, float x, float y) {
-    const envelope *e = flow;
-    float width = e->radius + e->spread * fmaxf(x, 0);
-    if (fabsf(y) > 4 * width) return 0;
-    return e->base * ptie_bell(y / width) * expf(-fmaxf(x, 0) / e->decay) *
+PTIE_INLINE float envelope_at(const envelope *e, float x, float y) {
+    float down = ptie_maxf(x, 0), width = e->radius + e->spread * down;
+    return e->base * ptie_bell(y / width) * ptie_expf(-down / e->decay) *
            ptie_smoothstep(x / e->radius + 1);
+}
+
+PTIE_CLONES static void envelope_line(const void *flow, float *value, const float *x,
+                                      const float *y) {
+    for (int i = 0; i < PTIE_LINE; i++) value[i] = envelope_at(flow, x[i], y[i]);
 }
 
 /* How the eddies in it look. */
@@ -59,7 +62,7 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     e.decay = ptie_draw_log(random, 0.5, 4) * axes.end;
     e.base = ptie_draw(random, 0.05, 0.5);
     crowd c = crowd_draw(scene, random);
-    ptie_paint(map, scene, &axes, envelope_at, &e);
+    ptie_paint(map, scene, &axes, envelope_line, &e);
     e.base = 1;
     double spacing = (double)(c.size * e.radius) / c.density;
     ptie_train train = ptie_train_make(spacing, c.speed * scene->time_s, (double)-e.radius,
@@ -82,17 +85,21 @@ typedef struct mixing {
     float decay, stirring;
 } mixing;
 
-static float mixing_at(const void *flow, float x, float y) {
+PTIE_CLONES static void mixing_line(const void *flow, float *value, const float *x,
+                                    const float *y) {
     const mixing *m = flow;
-    float behind = x + 2 * m->stream.radius;
-    if (behind <= 0) return 0;
-    ptie_parcel p = ptie_stream_at(&m->stream, x, y);
-    if (fabsf(p.across) > 4.5f) return 0;
-    float inside = ptie_bell(p.across) * ptie_smoothstep(behind / (2 * m->stream.radius));
-    float diluted = m->decay / (m->decay + fmaxf(p.x, 0));
-    float field[PTIE_TURBULENCE_FIELDS];
-    ptie_turbulence_at(&m->stream.turbulence, x + 3, y + 3, field);
-    return m->height * inside * diluted * p.width * expf(m->stirring * field[3]);
+    ptie_parcels parcels;
+    float field[PTIE_LINE][PTIE_TURBULENCE_FIELDS], aside_x[PTIE_LINE], aside_y[PTIE_LINE];
+    for (int i = 0; i < PTIE_LINE; i++) aside_x[i] = x[i] + 3, aside_y[i] = y[i] + 3;
+    ptie_stream_line(&m->stream, &parcels, x, y);
+    ptie_turbulence_line(&m->stream.turbulence, field, aside_x, aside_y);
+    for (int i = 0; i < PTIE_LINE; i++) {
+        ptie_parcel p = ptie_parcel_of(&parcels, i);
+        float begun = ptie_smoothstep((x[i] + 2 * m->stream.radius) / (2 * m->stream.radius));
+        float diluted = m->decay / (m->decay + ptie_maxf(p.x, 0));
+        value[i] = m->height * ptie_bell(p.across) * begun * diluted * p.width *
+                   ptie_expf(m->stirring * field[i][3]);
+    }
 }
 
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
@@ -110,7 +117,7 @@ static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *ra
     double other = ptie_gas_refractivity(gas, PTIE_AMBIENT_PA, PTIE_AMBIENT_K) - air;
     m.height = (float)(PTIE_GAUSSIAN_DEPTH * path * (warm ? air * (heated - 1) : other * share));
     PTIE_TRY(ptie_stream_draw(&m.stream, scene, random, &ranges, (double)axes.end));
-    ptie_paint(map, scene, &axes, mixing_at, &m);
+    ptie_paint(map, scene, &axes, mixing_line, &m);
     ptie_stream_free(&m.stream);
     return PTIE_OK;
 }

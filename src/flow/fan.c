@@ -17,24 +17,31 @@ typedef struct cone {
     float streaks;
 } cone;
 
-static float lobe(const cone *c, float angle) {
+PTIE_INLINE float lobe(const cone *c, float angle) {
     float t = fabsf(angle) / c->opening;
-    if (t > 4) return 0;
     return ptie_bell(t * 1.2f) * (1 - c->flatness) + c->flatness * ptie_rise(6 * (1 - t));
 }
 
-static float cone_at(const void *flow, float x, float y) {
-    const cone *c = flow;
-    float r = sqrtf(x * x + y * y), angle = atan2f(y, x);
-    float value = lobe(c, angle - c->centre);
-    if (c->twin > 0) value = fmaxf(value, c->twin * lobe(c, angle + c->centre));
-    if (value <= 0) return 0;
-    float field[PTIE_TURBULENCE_FIELDS];
-    ptie_turbulence_at(&c->turbulence, r, angle * 0.5f, field);
-    value *= fmaxf(0, 1 + c->rays * cosf(c->ray_count * angle + 0.6f * field[1]) +
-                          c->streaks * field[0]);
-    return value * expf(-r / c->reach) * c->source / (c->source + r) *
+PTIE_INLINE float cone_at(const cone *c, float r, float angle, float waver, float streak) {
+    float value = ptie_maxf(lobe(c, angle - c->centre), c->twin * lobe(c, angle + c->centre));
+    value *= ptie_maxf(0, 1 + c->rays * ptie_cosf(c->ray_count * angle + 0.6f * waver) +
+                              c->streaks * streak);
+    return value * ptie_expf(-r / c->reach) * c->source / (c->source + r) *
            ptie_smoothstep(r / (0.12f * c->source));
+}
+
+PTIE_CLONES static void cone_line(const void *flow, float *value, const float *x, const float *y) {
+    const cone *c = flow;
+    float field[PTIE_LINE][PTIE_TURBULENCE_FIELDS];
+    float r[PTIE_LINE], angle[PTIE_LINE], half_angle[PTIE_LINE];
+    for (int i = 0; i < PTIE_LINE; i++) {
+        r[i] = sqrtf(x[i] * x[i] + y[i] * y[i]);
+        angle[i] = ptie_anglef(y[i], x[i]);
+        half_angle[i] = angle[i] * 0.5f;
+    }
+    ptie_turbulence_line(&c->turbulence, field, r, half_angle);
+    for (int i = 0; i < PTIE_LINE; i++)
+        value[i] = cone_at(c, r[i], angle[i], field[i][1], field[i][0]);
 }
 
 static ptie_status streaks_create(ptie_turbulence *out, const ptie_scene *scene,
@@ -58,7 +65,7 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     c.centre = twin ? c.opening * ptie_draw(random, 1, 1.6) : 0;
     c.twin = twin ? ptie_draw(random, 0.4, 1) : 0;
     PTIE_TRY(streaks_create(&c.turbulence, scene, random));
-    ptie_paint(map, scene, &axes, cone_at, &c);
+    ptie_paint(map, scene, &axes, cone_line, &c);
     ptie_turbulence_free(&c.turbulence);
     return PTIE_OK;
 }
@@ -95,19 +102,24 @@ static void fill_rays(corner *c, double gamma, double mach, double turn, double 
     c->turn = (float)turn;
 }
 
-static float corner_at(const void *flow, float x, float y) {
-    const corner *c = flow;
+static float corner_at(const corner *c, float x, float y, float streak) {
     float angle = atan2f(y, x);
     float behind = x < 0 && y < 0 ? y : x * sinf(c->turn) + y * cosf(c->turn);
     float wall = ptie_rise((x < 0 ? y : behind) / c->edge);
     float t = (c->first - angle) / (c->first - c->last) * RAYS;
     if (t <= 0 || wall < 1e-4f || angle < -1.5f) return 0;
     int whole = t < RAYS ? (int)t : RAYS - 1;
-    float part = fminf(t - (float)whole, 1), field[PTIE_TURBULENCE_FIELDS];
+    float part = ptie_minf(t - (float)whole, 1);
     float phase = c->phase[whole] + part * (c->phase[whole + 1] - c->phase[whole]);
-    ptie_turbulence_at(&c->turbulence, x, y, field);
     float far = expf(-(x * x + y * y) / (c->reach * c->reach)); /* the wall's far end relieves it */
-    return phase * wall * far * (1 + c->streaks * field[0]);
+    return phase * wall * far * (1 + c->streaks * streak);
+}
+
+static void corner_line(const void *flow, float *value, const float *x, const float *y) {
+    const corner *c = flow;
+    float field[PTIE_LINE][PTIE_TURBULENCE_FIELDS];
+    ptie_turbulence_line(&c->turbulence, field, x, y);
+    for (int i = 0; i < PTIE_LINE; i++) value[i] = corner_at(c, x[i], y[i], field[i][0]);
 }
 
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
@@ -120,7 +132,7 @@ static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *ra
     double path = ptie_scene_rad(scene) * depth;
     fill_rays(&c, 1.4, mach, turn, path * pressure * ptie_ambient_refractivity());
     PTIE_TRY(streaks_create(&c.turbulence, scene, random));
-    ptie_paint(map, scene, &axes, corner_at, &c);
+    ptie_paint(map, scene, &axes, corner_line, &c);
     ptie_turbulence_free(&c.turbulence);
     return PTIE_OK;
 }

@@ -22,27 +22,40 @@ typedef struct front {
 } front;
 
 /* d: distance ahead of the front. */
-static float shape(const front *f, float d, float y) {
+PTIE_INLINE float shape(const front *f, front_kind kind, float d, float y) {
     float sharp = d / f->thickness;
-    if (f->kind == FRONT_SHEET) return ptie_bell(sharp);
-    if (sharp > 5 || d < -10 * f->tail) return 0;
-    float fading = expf(fminf(d, 0) / f->tail);
-    if (f->kind == FRONT_STEP) return fading * ptie_rise(-sharp);
-    float half =
-        d < 0 ? f->side * sqrtf(-d / (f->side - d)) : -3 * d; /* a rounded nose, then a slab */
+    if (kind == FRONT_SHEET) return ptie_bell(sharp);
+    float fading = ptie_expf(ptie_minf(d, 0) / f->tail);
+    if (kind == FRONT_STEP) return fading * ptie_rise(-sharp);
+    float behind = ptie_maxf(-d, 0); /* a rounded nose, then a slab */
+    float half = f->side * sqrtf(behind / (f->side + behind)) - 3 * ptie_maxf(d, 0);
     return fading * ptie_rise((half - fabsf(y)) / f->thickness);
 }
 
-static float at(const void *flow, float x, float y) {
+/* One kind of front, known when this is compiled. */
+PTIE_INLINE void add_fronts(const front *f, front_kind kind, float *value, const float *ahead,
+                            const float *aside) {
+    for (int n = 0; n < f->count; n++)
+        for (int i = 0; i < PTIE_LINE; i++)
+            value[i] += f->height[n] * shape(f, kind, ahead[i] - f->place[n], aside[i]);
+}
+
+PTIE_CLONES static void line(const void *flow, float *value, const float *x, const float *y) {
     const front *f = flow;
-    float field[PTIE_TURBULENCE_FIELDS], sum = 0;
-    ptie_turbulence_at(&f->turbulence, x, y, field);
-    float ahead = x - f->wrinkles * field[0] + f->bend * y * y, aside = y + f->wrinkles * field[1];
-    float window =
-        f->kind == FRONT_NOSE ? 1 : ptie_rise((f->side - fabsf(aside)) / f->side_softness);
-    if (window < 1e-4f) return 0;
-    for (int i = 0; i < f->count; i++) sum += f->height[i] * shape(f, ahead - f->place[i], aside);
-    return sum * window;
+    float field[PTIE_LINE][PTIE_TURBULENCE_FIELDS], ahead[PTIE_LINE], aside[PTIE_LINE];
+    ptie_turbulence_line(&f->turbulence, field, x, y);
+    for (int i = 0; i < PTIE_LINE; i++) {
+        ahead[i] = x[i] - f->wrinkles * field[i][0] + f->bend * y[i] * y[i];
+        aside[i] = y[i] + f->wrinkles * field[i][1];
+        value[i] = 0;
+    }
+    switch (f->kind) {
+    case FRONT_STEP: add_fronts(f, FRONT_STEP, value, ahead, aside); break;
+    case FRONT_SHEET: add_fronts(f, FRONT_SHEET, value, ahead, aside); break;
+    default: add_fronts(f, FRONT_NOSE, value, ahead, aside); return; /* it has sides of its own */
+    }
+    for (int i = 0; i < PTIE_LINE; i++)
+        value[i] *= ptie_rise((f->side - fabsf(aside[i])) / f->side_softness);
 }
 
 static void place_fronts(front *f, const ptie_axes *axes, double spacing, double way,
@@ -74,7 +87,7 @@ static ptie_status draw(float *map, const ptie_scene *scene, ptie_random *random
     place_fronts(&f, &axes, spacing, speed * scene->time_s, key);
     for (int i = 0; i < f.count; i++) f.height[i] *= height;
     PTIE_TRY(ptie_turbulence_create(&f.turbulence, &wrinkling));
-    ptie_paint(map, scene, &axes, at, &f);
+    ptie_paint(map, scene, &axes, line, &f);
     ptie_turbulence_free(&f.turbulence);
     return PTIE_OK;
 }

@@ -16,23 +16,28 @@ typedef struct jet {
     float head, head_steepness; /* how far a starting jet has come */
 } jet;
 
-static float profile(const jet *j, const ptie_parcel *p) {
+PTIE_INLINE float profile(const jet *j, const ptie_parcel *p) {
     float gaussian = ptie_bell(p->across);
     float flat = j->sharpness * (1 - ptie_smoothstep(p->x / j->core));
-    if (flat <= 0) return gaussian;
     return gaussian + flat * (ptie_rise(4 * (1.2f - fabsf(p->across))) - gaussian);
 }
 
-static float at(const void *flow, float x, float y) {
+PTIE_INLINE float at(const jet *j, const ptie_parcel *p, float x) {
+    float value = profile(j, p) * ptie_expf(-p->x / j->decay) * ptie_smoothstep(x / 0.01f);
+    value *= ptie_maxf(0, 1 + j->gusts * p->gust);
+    value *= 1 + j->cells * ptie_expf(-x / j->cell_decay) * ptie_cosf(x / j->cell) *
+                     ptie_bell(1.3f * p->across);
+    return value * ptie_rise((j->head - p->x) * j->head_steepness);
+}
+
+PTIE_CLONES static void line(const void *flow, float *value, const float *x, const float *y) {
     const jet *j = flow;
-    if (x < -0.02f) return 0;
-    ptie_parcel p = ptie_stream_at(&j->stream, x, y);
-    float value = profile(j, &p) * expf(-p.x / j->decay) * ptie_smoothstep(x / 0.01f);
-    value *= fmaxf(0, 1 + j->gusts * p.gust);
-    if (j->cells > 0)
-        value *= 1 + j->cells * expf(-x / j->cell_decay) * cosf(x / j->cell) *
-                         ptie_bell(1.3f * p.across);
-    return value * ptie_rise((j->head - p.x) * j->head_steepness);
+    ptie_parcels parcels;
+    ptie_stream_line(&j->stream, &parcels, x, y);
+    for (int i = 0; i < PTIE_LINE; i++) {
+        ptie_parcel p = ptie_parcel_of(&parcels, i);
+        value[i] = at(j, &p, x[i]);
+    }
 }
 
 static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *random) {
@@ -52,7 +57,7 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     j.head_steepness = ptie_draw(random, 6, 40);
     PTIE_TRY(ptie_stream_draw(&j.stream, scene, random, &ranges, length));
     j.head = starting ? (float)(begun + 0.5 * j.stream.speed * scene->time_s) : 1e3f;
-    ptie_paint(map, scene, &axes, at, &j);
+    ptie_paint(map, scene, &axes, line, &j);
     ptie_stream_free(&j.stream);
     return PTIE_OK;
 }
@@ -62,11 +67,14 @@ typedef struct gas_jet {
     ptie_exhaust exhaust;
 } gas_jet;
 
-static float gas_at(const void *flow, float x, float y) {
+static void gas_line(const void *flow, float *value, const float *x, const float *y) {
     const gas_jet *j = flow;
-    if (x < 0) return 0;
-    ptie_parcel p = ptie_stream_at(&j->stream, x, y);
-    return ptie_exhaust_at(&j->exhaust, &p, x, y);
+    ptie_parcels parcels;
+    ptie_stream_line(&j->stream, &parcels, x, y);
+    for (int i = 0; i < PTIE_LINE; i++) {
+        ptie_parcel p = ptie_parcel_of(&parcels, i);
+        value[i] = ptie_exhaust_at(&j->exhaust, &p, x[i], y[i]);
+    }
 }
 
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
@@ -77,7 +85,7 @@ static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *ra
     double radius = (double)j.exhaust.radius;
     ptie_stream_ranges ranges = {radius, radius, 0.09, 0.15, 0.1, 0.45};
     PTIE_TRY(ptie_stream_draw(&j.stream, scene, random, &ranges, (double)axes.end));
-    ptie_paint(map, scene, &axes, gas_at, &j);
+    ptie_paint(map, scene, &axes, gas_line, &j);
     ptie_stream_free(&j.stream);
     return PTIE_OK;
 }

@@ -18,8 +18,8 @@ typedef struct body {
     float edge;               /* softness, units */
 } body;
 
-static float half_height(const body *b, float t) {
-    switch (b->outline) {
+PTIE_INLINE float half_height(const body *b, outline shape, float t) {
+    switch (shape) {
     case OUTLINE_CONE: return b->lip + b->slope * t;
     case OUTLINE_BELL: return b->lip + b->slope * t * t / (0.05f + t) * 1.5f;
     case OUTLINE_CAP: return t < 0.06f ? b->lip + 0.3f * t : b->lip + 0.018f + b->slope * 0.08f;
@@ -27,14 +27,27 @@ static float half_height(const body *b, float t) {
     }
 }
 
-static float body_at(const body *b, float x, float y) {
-    float t = -x;
-    if (b->height <= 0 || t < -4 * b->edge || t > b->length + 4 * b->edge) return 0;
-    float half = half_height(b, fmaxf(t, 0)), aside = fabsf(y);
+PTIE_INLINE float body_at(const body *b, outline shape, float x, float y) {
+    float t = -x, half = half_height(b, shape, ptie_maxf(t, 0)), aside = fabsf(y);
     float ends = ptie_rise(t / b->edge) * ptie_rise((b->length - t) / b->edge);
     float wall = ptie_rise((half - aside) / b->edge);
     float bore = ptie_rise((0.6f * b->lip - aside) / b->edge);
     return b->height * ends * wall * (1 - b->hollow * bore);
+}
+
+/* A body whose outline is known when this is compiled. */
+PTIE_INLINE void add_outline(const body *b, outline shape, float *value, const float *x,
+                             const float *y) {
+    for (int i = 0; i < PTIE_LINE; i++) value[i] += body_at(b, shape, x[i], y[i]);
+}
+
+PTIE_CLONES static void add_body(const body *b, float *value, const float *x, const float *y) {
+    switch (b->outline) {
+    case OUTLINE_CONE: add_outline(b, OUTLINE_CONE, value, x, y); break;
+    case OUTLINE_BELL: add_outline(b, OUTLINE_BELL, value, x, y); break;
+    case OUTLINE_CAP: add_outline(b, OUTLINE_CAP, value, x, y); break;
+    default: add_outline(b, OUTLINE_TUBE, value, x, y);
+    }
 }
 
 typedef struct channel {
@@ -50,26 +63,25 @@ typedef struct nozzle {
     channel channels[MOST_CHANNELS];
 } nozzle;
 
-static float channels_at(const nozzle *n, float x, float y) {
-    ptie_parcel p = ptie_stream_at(&n->stream, x, y);
-    float aside = p.across * p.width, along = fmaxf(p.x, 0), value = 0;
-    if (fabsf(p.across) > 6) return 0;
-    for (int i = 0; i < n->count; i++) {
-        const channel *c = &n->channels[i];
-        float width = c->width + c->spread * along;
-        float d = (aside - c->place * (1 + n->divergence * along)) / width;
-        if (fabsf(d) > 4) continue;
-        float bead = c->beads > 0 ? 1 + c->beads * cosf(c->cell * x) * expf(-4 * x) : 1;
-        value += c->strength * bead * ptie_bell(d) * expf(-along / c->decay) * c->width / width;
-    }
-    return value;
+PTIE_INLINE float channel_at(const nozzle *n, const channel *c, const ptie_parcel *p, float x) {
+    float along = ptie_maxf(p->x, 0), width = c->width + c->spread * along;
+    float d = (p->across * p->width - c->place * (1 + n->divergence * along)) / width;
+    float bead = 1 + c->beads * ptie_cosf(c->cell * x) * ptie_expf(-4 * x);
+    return c->strength * bead * ptie_bell(d) * ptie_expf(-along / c->decay) * c->width / width;
 }
 
-static float at(const void *flow, float x, float y) {
+PTIE_CLONES static void line(const void *flow, float *value, const float *x, const float *y) {
     const nozzle *n = flow;
-    float value = body_at(&n->body, x, y);
-    if (x > 0) value += channels_at(n, x, y) * ptie_smoothstep(x / (2 * n->body.edge));
-    return value;
+    ptie_parcels parcels;
+    ptie_stream_line(&n->stream, &parcels, x, y);
+    for (int i = 0; i < PTIE_LINE; i++) value[i] = 0;
+    for (int c = 0; c < n->count; c++)
+        for (int i = 0; i < PTIE_LINE; i++) {
+            ptie_parcel p = ptie_parcel_of(&parcels, i);
+            value[i] += channel_at(n, &n->channels[c], &p, ptie_maxf(x[i], 0));
+        }
+    for (int i = 0; i < PTIE_LINE; i++) value[i] *= ptie_smoothstep(x[i] / (2 * n->body.edge));
+    if (n->body.height > 0) add_body(&n->body, value, x, y);
 }
 
 static void draw_body(body *b, ptie_random *random, float lip, float pixel) {
@@ -112,7 +124,7 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     draw_body(&n.body, random, lip * 1.1f, axes.pixel);
     draw_channels(&n, random, &axes, lip);
     PTIE_TRY(ptie_stream_draw(&n.stream, scene, random, &ranges, (double)axes.end));
-    ptie_paint(map, scene, &axes, at, &n);
+    ptie_paint(map, scene, &axes, line, &n);
     ptie_stream_free(&n.stream);
     return PTIE_OK;
 }
@@ -125,18 +137,25 @@ typedef struct manifold {
     float pitch, edge;
 } manifold;
 
-static float manifold_at(const void *flow, float x, float y) {
-    const manifold *m = flow;
-    if (x < 0) return 0;
-    ptie_parcel p = ptie_stream_at(&m->stream, x, y);
-    float folded = p.across * p.width, sum = 0;
+static float manifold_at(const manifold *m, const ptie_parcel *p, float x, float y) {
+    float folded = p->across * p->width, sum = 0;
     for (int i = 0; i < m->count; i++) {
         float place = m->pitch * ((float)i - 0.5f * (float)(m->count - 1));
-        ptie_parcel own = p;
-        own.across = (folded - place) / p.width;
+        ptie_parcel own = *p;
+        own.across = (folded - place) / p->width;
         sum += ptie_exhaust_at(&m->exhaust, &own, x, y - place);
     }
     return sum;
+}
+
+static void manifold_line(const void *flow, float *value, const float *x, const float *y) {
+    const manifold *m = flow;
+    ptie_parcels parcels;
+    ptie_stream_line(&m->stream, &parcels, x, y);
+    for (int i = 0; i < PTIE_LINE; i++) {
+        ptie_parcel p = ptie_parcel_of(&parcels, i);
+        value[i] = manifold_at(m, &p, x[i], y[i]);
+    }
 }
 
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {
@@ -149,7 +168,7 @@ static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *ra
     ptie_stream_ranges ranges = {radius, radius, 0.06, 0.13, 0.05, 0.35};
     PTIE_TRY(ptie_stream_draw(&m.stream, scene, random, &ranges, (double)axes.end));
     m.stream.reach += 0.5f * (float)m.count * m.pitch / m.exhaust.radius;
-    ptie_paint(map, scene, &axes, manifold_at, &m);
+    ptie_paint(map, scene, &axes, manifold_line, &m);
     ptie_stream_free(&m.stream);
     return PTIE_OK;
 }

@@ -26,7 +26,7 @@ typedef struct discharge {
     float flicker;
 } discharge;
 
-static float channel_at(const discharge *d, const channel *c, float x, float y) {
+PTIE_INLINE float channel_at(const discharge *d, const channel *c, float x, float y) {
     if (x <= c->start || x >= c->end) return 0;
     float step = (x - c->start) / (c->end - c->start) * CHANNEL_STEPS;
     int whole = (int)step;
@@ -43,13 +43,19 @@ static float channel_at(const discharge *d, const channel *c, float x, float y) 
     return ends * c->strength * (ptie_bell(r) + glow) * (d->depth > 0 ? c->radius : 1);
 }
 
-static float at(const void *flow, float x, float y) {
+PTIE_CLONES static void line(const void *flow, float *value, const float *x, const float *y) {
     const discharge *d = flow;
-    float value = 0, field[PTIE_TURBULENCE_FIELDS];
-    for (int i = 0; i < d->count; i++) value += channel_at(d, &d->channels[i], x, y);
-    if (value < 1e-5f) return 0;
-    ptie_turbulence_at(&d->turbulence, x, y, field);
-    return d->height * value * fmaxf(0.1f, 1 + d->flicker * field[3]);
+    float field[PTIE_LINE][PTIE_TURBULENCE_FIELDS];
+    bool bright = false;
+    for (int i = 0; i < PTIE_LINE; i++) {
+        value[i] = 0;
+        for (int n = 0; n < d->count; n++) value[i] += channel_at(d, &d->channels[n], x[i], y[i]);
+        bright |= value[i] > 0;
+    }
+    if (!bright) return;
+    ptie_turbulence_line(&d->turbulence, field, x, y);
+    for (int i = 0; i < PTIE_LINE; i++)
+        value[i] *= d->height * ptie_maxf(0.1f, 1 + d->flicker * field[i][3]);
 }
 
 /* Mean of the path over an eighth of the channel; the glow follows this. */
@@ -114,7 +120,7 @@ static ptie_status draw_discharge(float *map, const ptie_scene *scene, ptie_rand
     d->halo = ptie_draw(random, 2.5, 6);
     PTIE_TRY(ptie_turbulence_create(&d->turbulence, &params));
     draw_channels(d, random, axes);
-    ptie_paint(map, scene, axes, at, d);
+    ptie_paint(map, scene, axes, line, d);
     ptie_turbulence_free(&d->turbulence);
     return PTIE_OK;
 }

@@ -11,12 +11,14 @@ typedef struct carrier {
     float radius, spread, decay, height;
 } carrier;
 
-static float carrier_at(const void *flow, float x, float y) {
+PTIE_CLONES static void carrier_line(const void *flow, float *value, const float *x,
+                                     const float *y) {
     const carrier *c = flow;
-    float width = c->radius + c->spread * fmaxf(x, 0);
-    if (fabsf(y) > 4 * width) return 0;
-    return c->height * ptie_bell(y / width) * expf(-fmaxf(x, 0) / c->decay) *
-           ptie_smoothstep(x / 0.05f + 1);
+    for (int i = 0; i < PTIE_LINE; i++) {
+        float down = ptie_maxf(x[i], 0), width = c->radius + c->spread * down;
+        value[i] = c->height * ptie_bell(y[i] / width) * ptie_expf(-down / c->decay) *
+                   ptie_smoothstep(x[i] / 0.05f + 1);
+    }
 }
 
 /* How the pockets of a row look. */
@@ -69,7 +71,7 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     carrier c = {
         .radius = r.size * ptie_draw(random, 0.6, 1.5), .spread = r.growth, .decay = r.decay};
     c.height = ptie_draw(random, 0.05, 0.4);
-    ptie_paint(map, scene, &axes, carrier_at, &c);
+    ptie_paint(map, scene, &axes, carrier_line, &c);
     ptie_train train = train_of(&r, scene);
     for (int64_t n = train.first; n <= train.last; n++) {
         pocket p = pocket_at(&r, &train, n);

@@ -15,25 +15,24 @@ typedef struct island {
     float tall;             /* 1, or rad per unit of the field */
 } island;
 
-static float window(const island *o, float x, float y) {
-    float r = sqrtf(x * x + y * y);
-    return ptie_rise((o->radius - r) / o->softness);
+PTIE_CLONES static void island_line(const void *flow, float *value, const float *x,
+                                    const float *y) {
+    const island *o = flow;
+    float field[PTIE_LINE][PTIE_TURBULENCE_FIELDS];
+    ptie_turbulence_line(&o->turbulence, field, x, y);
+    for (int i = 0; i < PTIE_LINE; i++) {
+        float r = sqrtf(x[i] * x[i] + y[i] * y[i]);
+        float shore = ptie_smoothstep((field[i][0] - o->level) / o->edge);
+        value[i] = ptie_rise((o->radius - r) / o->softness) *
+                   (o->ground + shore * ptie_maxf(0, 1 + o->relief * field[i][1]));
+    }
 }
 
-static float island_at(const void *flow, float x, float y) {
+static void screen_line(const void *flow, float *value, const float *x, const float *y) {
     const island *o = flow;
-    float inside = window(o, x, y), field[PTIE_TURBULENCE_FIELDS];
-    if (inside < 1e-4f) return 0;
-    ptie_turbulence_at(&o->turbulence, x, y, field);
-    float shore = ptie_smoothstep((field[0] - o->level) / o->edge);
-    return inside * (o->ground + shore * fmaxf(0, 1 + o->relief * field[1]));
-}
-
-static float screen_at(const void *flow, float x, float y) {
-    const island *o = flow;
-    float field[PTIE_TURBULENCE_FIELDS];
-    ptie_turbulence_at(&o->turbulence, x, y, field);
-    return o->tall * field[0];
+    float field[PTIE_LINE][PTIE_TURBULENCE_FIELDS];
+    ptie_turbulence_line(&o->turbulence, field, x, y);
+    for (int i = 0; i < PTIE_LINE; i++) value[i] = o->tall * field[i][0];
 }
 
 static ptie_status draw_field(island *o, const ptie_scene *scene, ptie_random *random, double low,
@@ -78,7 +77,7 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
         return PTIE_OK;
     }
     PTIE_TRY(draw_field(&o, scene, random, 0.25, 1));
-    ptie_paint(map, scene, &axes, island_at, &o);
+    ptie_paint(map, scene, &axes, island_line, &o);
     ptie_turbulence_free(&o.turbulence);
     return PTIE_OK;
 }
@@ -90,7 +89,7 @@ static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *ra
     island o = {0};
     PTIE_TRY(draw_field(&o, scene, random, 0.3, 2));
     o.tall = o.turbulence.screen_rad * (float)pow(r0, -5.0 / 6);
-    ptie_paint(map, scene, &axes, screen_at, &o);
+    ptie_paint(map, scene, &axes, screen_line, &o);
     ptie_turbulence_free(&o.turbulence);
     return PTIE_OK;
 }

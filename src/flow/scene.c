@@ -73,15 +73,21 @@ double ptie_scene_rad(const ptie_scene *scene) {
     return 2 * PI / scene->wavelength_m * ptie_scene_unit_m(scene);
 }
 
-void ptie_paint(float *map, const ptie_scene *scene, const ptie_axes *axes, ptie_point point,
+void ptie_paint(float *map, const ptie_scene *scene, const ptie_axes *axes, ptie_line line,
                 const void *flow) {
     float step_x = axes->cosine * axes->pixel, step_y = -axes->mirror * axes->sine * axes->pixel;
-    for (int32_t y = 0; y < scene->height; y++) {
-        float left_x, left_y;
-        to_flow(axes, 0, (float)y, &left_x, &left_y);
-        float *row = map + (size_t)y * (size_t)scene->width;
-        for (int32_t x = 0; x < scene->width; x++)
-            row[x] = point(flow, left_x + step_x * (float)x, left_y + step_y * (float)x);
+    float value[PTIE_LINE], x[PTIE_LINE], y[PTIE_LINE];
+    for (int32_t row = 0; row < scene->height; row++) {
+        float left_x, left_y, *out = map + (size_t)row * (size_t)scene->width;
+        to_flow(axes, 0, (float)row, &left_x, &left_y);
+        for (int32_t first = 0; first < scene->width; first += PTIE_LINE) {
+            for (int32_t i = 0; i < PTIE_LINE; i++) {
+                x[i] = left_x + step_x * (float)(first + i);
+                y[i] = left_y + step_y * (float)(first + i);
+            }
+            line(flow, value, x, y);
+            memcpy(out + first, value, (size_t)smaller(PTIE_LINE, scene->width - first) * sizeof *out);
+        }
     }
 }
 
@@ -194,20 +200,4 @@ float ptie_draw(ptie_random *random, double low, double high) {
 
 float ptie_draw_log(ptie_random *random, double low, double high) {
     return (float)ptie_random_log_uniform(random, low, high);
-}
-
-float ptie_bell(float t) {
-    if (fabsf(t) > 6) return 0; /* 1.5e-8 */
-    return expf(-0.5f * t * t);
-}
-
-float ptie_smoothstep(float t) {
-    if (t <= 0) return 0;
-    if (t >= 1) return 1;
-    return t * t * (3 - 2 * t);
-}
-
-float ptie_rise(float t) {
-    if (fabsf(t) > 9) return t > 0 ? 1 : 0; /* 1.5e-8 */
-    return 1 / (1 + expf(-2 * t));
 }

@@ -3,6 +3,7 @@
 #ifndef PTIE_FLOW_SCENE_H
 #define PTIE_FLOW_SCENE_H
 
+#include "base/elementary.h"
 #include "base/random.h"
 #include "base/status.h"
 
@@ -47,10 +48,12 @@ double ptie_speed_draw(const ptie_scene *scene, ptie_random *random);
  * unit. */
 double ptie_scene_rad(const ptie_scene *scene);
 
-/* Value of a flow at a point of its coordinates. */
-typedef float (*ptie_point)(const void *flow, float x, float y);
-/* map = point(flow, x, y) everywhere. */
-void ptie_paint(float *map, const ptie_scene *scene, const ptie_axes *axes, ptie_point point,
+/* Flows are painted by lines of points, in loops that vectorise. */
+#define PTIE_LINE 64
+/* value (out): the flow at points of its coordinates, all arrays of PTIE_LINE. */
+typedef void (*ptie_line)(const void *flow, float *value, const float *x, const float *y);
+/* map = what `line` says, everywhere. */
+void ptie_paint(float *map, const ptie_scene *scene, const ptie_axes *axes, ptie_line line,
                 const void *flow);
 
 /* map = 0 everywhere. */
@@ -87,11 +90,20 @@ bool ptie_chance(ptie_random *random, double probability);
 float ptie_draw(ptie_random *random, double low, double high);
 float ptie_draw_log(ptie_random *random, double low, double high);
 
-/* exp(-t^2 / 2) */
-float ptie_bell(float t);
+/* exp(-t^2 / 2); 0 beyond |t| = 6, where it is below 1.5e-8. */
+PTIE_INLINE float ptie_bell(float t) {
+    return fabsf(t) > 6 ? 0 : ptie_expf(-0.5f * t * t);
+}
+
 /* 0 -> 1 over t = 0 .. 1, with continuous slope. */
-float ptie_smoothstep(float t);
-/* 0 -> 1 around t = 0, as (1 + tanh t) / 2. */
-float ptie_rise(float t);
+PTIE_INLINE float ptie_smoothstep(float t) {
+    const float s = ptie_minf(ptie_maxf(t, 0), 1);
+    return s * s * (3 - 2 * s);
+}
+
+/* 0 -> 1 around t = 0, as (1 + tanh t) / 2; 0 where that is below 1.5e-8. */
+PTIE_INLINE float ptie_rise(float t) {
+    return t < -9 ? 0 : 1 / (1 + ptie_expf(-2 * t));
+}
 
 #endif

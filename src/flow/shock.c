@@ -24,39 +24,48 @@ typedef struct shock {
 } shock;
 
 /* d: distance ahead of the front.  A steep rise, then Friedlander's decay. */
-static float profile(const shock *s, float d) {
-    if (d > 0) return ptie_bell(d / s->thickness);
-    float t = -d / s->tail;
-    return t < 12 ? expf(-t) * fmaxf(0, 1 - s->dip * t) : 0;
+PTIE_INLINE float profile(const shock *s, float d) {
+    float t = ptie_maxf(-d, 0) / s->tail;
+    float behind = ptie_expf(-t) * ptie_maxf(0, 1 - s->dip * t);
+    return d > 0 ? ptie_bell(d / s->thickness) : behind;
 }
 
-static float bow(const shock *s, float x, float y) {
+PTIE_INLINE float bow(const shock *s, float x, float y) {
     float aside = y / s->standoff;
     float front = s->standoff * (s->slope * (sqrtf(1 + aside * aside) - 1) - 1); /* a hyperbola */
-    return profile(s, front - x) * expf(-0.15f * fabsf(aside));
+    return profile(s, front - x) * ptie_expf(-0.15f * fabsf(aside));
 }
 
 /* Oblique shocks thrown back and forth between the stream's boundaries. */
-static float lattice(const shock *s, float x, float y) {
-    if (x < 0) return 0;
-    float phase = x / s->cell - floorf(x / s->cell), zigzag = s->half * fabsf(1 - 2 * phase);
+PTIE_INLINE float lattice(const shock *s, float x, float y) {
+    float phase = x / s->cell - ptie_floorf(x / s->cell), zigzag = s->half * fabsf(1 - 2 * phase);
     float cosine = s->cell / sqrtf(s->cell * s->cell + 4 * s->half * s->half);
     float d = (fabsf(y) - zigzag) * cosine;
     float inside = ptie_rise((s->half - fabsf(y)) / s->thickness);
-    float sheet = expf(-fabsf(d) / s->thickness * 0.7f);
-    return inside * (sheet + 0.35f * ptie_rise(d / s->thickness)) * expf(-x / s->fade);
+    float sheet = ptie_expf(-fabsf(d) / s->thickness * 0.7f);
+    float value = inside * (sheet + 0.35f * ptie_rise(d / s->thickness));
+    return x < 0 ? 0 : value * ptie_expf(-x / s->fade);
 }
 
-static float at(const void *flow, float x, float y) {
+PTIE_INLINE float blast_at(const shock *s, int n, float x, float y) {
+    float dx = x - s->x[n], dy = y - s->y[n];
+    return s->height[n] * profile(s, sqrtf(dx * dx + dy * dy) - s->radius[n]);
+}
+
+PTIE_CLONES static void line(const void *flow, float *value, const float *x, const float *y) {
     const shock *s = flow;
-    if (s->kind == SHOCK_BOW) return bow(s, x, y);
-    if (s->kind == SHOCK_LATTICE) return lattice(s, x, y);
-    float sum = 0;
-    for (int i = 0; i < s->count; i++) {
-        float dx = x - s->x[i], dy = y - s->y[i];
-        sum += s->height[i] * profile(s, sqrtf(dx * dx + dy * dy) - s->radius[i]);
+    switch (s->kind) {
+    case SHOCK_BOW:
+        for (int i = 0; i < PTIE_LINE; i++) value[i] = bow(s, x[i], y[i]);
+        break;
+    case SHOCK_LATTICE:
+        for (int i = 0; i < PTIE_LINE; i++) value[i] = lattice(s, x[i], y[i]);
+        break;
+    default:
+        for (int i = 0; i < PTIE_LINE; i++) value[i] = 0;
+        for (int n = 0; n < s->count; n++)
+            for (int i = 0; i < PTIE_LINE; i++) value[i] += blast_at(s, n, x[i], y[i]);
     }
-    return sum;
 }
 
 /* Sedov's law from a radius now (`start`) and a front speed now: R = start (1 + 5/2 speed t /
@@ -102,7 +111,7 @@ static ptie_status parametric(float *map, const ptie_scene *scene, ptie_random *
     draw_blasts(&s, scene, random, &axes);
     s.standoff *= (float)(1 + beat);
     s.cell *= (float)(1 + beat);
-    ptie_paint(map, scene, &axes, at, &s);
+    ptie_paint(map, scene, &axes, line, &s);
     return PTIE_OK;
 }
 
@@ -154,8 +163,7 @@ typedef struct bow_shock {
     float slope, standoff, tail, mach, rad, edge;
 } bow_shock;
 
-static float bow_at(const void *flow, float x, float y) {
-    const bow_shock *b = flow;
+static float bow_at(const bow_shock *b, float x, float y) {
     float aside = y / b->standoff, root = sqrtf(1 + aside * aside);
     float d = x - b->standoff * (b->slope * (root - 1) - 1); /* behind the front, downstream */
     if (d < -4 * b->edge) return 0;
@@ -166,6 +174,10 @@ static float bow_at(const void *flow, float x, float y) {
     return b->rad * jump * ptie_rise(d / b->edge) * expf(-fmaxf(d, 0) / b->tail);
 }
 
+static void bow_line(const void *flow, float *value, const float *x, const float *y) {
+    for (int i = 0; i < PTIE_LINE; i++) value[i] = bow_at(flow, x[i], y[i]);
+}
+
 static void draw_bow(float *map, const ptie_scene *scene, ptie_random *random,
                      const ptie_axes *axes, double rad, double beat) {
     bow_shock b = {.rad = (float)rad, .edge = 0.7f * axes->pixel};
@@ -174,7 +186,7 @@ static void draw_bow(float *map, const ptie_scene *scene, ptie_random *random,
     b.tail = b.standoff * ptie_draw(random, 1, 6);
     b.slope = sqrtf(b.mach * b.mach - 1); /* far out it is a Mach wave: dx / dy = cot(mu) */
     b.standoff *= (float)(1 + beat);
-    ptie_paint(map, scene, axes, bow_at, &b);
+    ptie_paint(map, scene, axes, bow_line, &b);
 }
 
 /* An oblique shock at each side of a wedge, which is opaque. */
@@ -184,13 +196,16 @@ typedef struct wedge {
         edge; /* rad behind the shock; length over which it weakens; softness; units */
 } wedge;
 
-static float wedge_at(const void *flow, float x, float y) {
-    const wedge *w = flow;
+static float wedge_at(const wedge *w, float x, float y) {
     if (x < -w->edge) return 0;
     float aside = fabsf(y), steep = sqrtf(1 + w->shock * w->shock);
     float inside = ptie_rise((w->shock * x - aside) / (w->edge * steep));
     float outside = ptie_rise((aside - w->surface * x) / w->edge);
     return w->rad * inside * outside * w->relief / (w->relief + fmaxf(x, 0));
+}
+
+static void wedge_line(const void *flow, float *value, const float *x, const float *y) {
+    for (int i = 0; i < PTIE_LINE; i++) value[i] = wedge_at(flow, x[i], y[i]);
 }
 
 static void draw_wedge(float *map, const ptie_scene *scene, ptie_random *random,
@@ -204,7 +219,7 @@ static void draw_wedge(float *map, const ptie_scene *scene, ptie_random *random,
                .rad = (float)(rad * jump),
                .relief = ptie_draw(random, 0.5, 3),
                .edge = 0.7f * axes->pixel};
-    ptie_paint(map, scene, axes, wedge_at, &w);
+    ptie_paint(map, scene, axes, wedge_line, &w);
 }
 
 static ptie_status physical(float *map, const ptie_scene *scene, ptie_random *random) {

@@ -30,21 +30,27 @@ void ptie_stream_free(ptie_stream *stream) {
     ptie_turbulence_free(&stream->turbulence);
 }
 
-ptie_parcel ptie_stream_at(const ptie_stream *stream, float x, float y) {
-    float width = stream->radius + stream->spread * (x > 0 ? x : 0);
-    /* Folds of four standard deviations away from anything: spare the turbulence. */
-    if (fabsf(y) > width * (stream->reach + 4 * stream->folding))
-        return (ptie_parcel){.x = x, .across = y / width, .width = width};
-    float field[PTIE_TURBULENCE_FIELDS];
-    ptie_turbulence_at(&stream->turbulence, x, y, field);
-    float grown = ptie_smoothstep(x / stream->onset);
-    float fold = stream->folding * grown * width;
-    float sway = stream->sway * grown * width;
-    float wave = sway > 0 ? sway * sinf(stream->sway_wave * x - stream->sway_phase + field[3]) : 0;
-    float folded = x + fold * field[0];
-    float local = stream->radius + stream->spread * (folded > 0 ? folded : 0);
-    return (ptie_parcel){.x = folded,
-                         .across = (y + fold * field[1] - wave) / local,
-                         .width = local,
-                         .gust = grown * field[2]};
+PTIE_CLONES void ptie_stream_line(const ptie_stream *stream, ptie_parcels *parcels, const float *x,
+                                  const float *y) {
+    const ptie_stream s = *stream; /* what is stored below cannot be a part of it */
+    float field[PTIE_LINE][PTIE_TURBULENCE_FIELDS] = {0};
+    float width[PTIE_LINE], grown[PTIE_LINE];
+    int seen = 0;
+    for (int i = 0; i < PTIE_LINE; i++) {
+        width[i] = s.radius + s.spread * ptie_maxf(x[i], 0);
+        /* Folds of four standard deviations away from anything: there the turbulence is spared. */
+        seen |= fabsf(y[i]) <= width[i] * (s.reach + 4 * s.folding);
+    }
+    if (seen) ptie_turbulence_line(&s.turbulence, field, x, y);
+    for (int i = 0; i < PTIE_LINE; i++) grown[i] = ptie_smoothstep(x[i] / s.onset) * width[i];
+    for (int i = 0; i < PTIE_LINE; i++) {
+        float wave = ptie_sinf(s.sway_wave * x[i] - s.sway_phase + field[i][3]);
+        float folded = x[i] + s.folding * grown[i] * field[i][0];
+        float local = s.radius + s.spread * ptie_maxf(folded, 0);
+        parcels->x[i] = folded;
+        parcels->across[i] =
+            (y[i] + grown[i] * (s.folding * field[i][1] - s.sway * wave)) / local;
+        parcels->width[i] = local;
+        parcels->gust[i] = grown[i] / width[i] * field[i][2];
+    }
 }

@@ -34,6 +34,16 @@ typedef struct ptie_parcel {
     float width;  /* local half-width, units */
     float gust;   /* fluctuation of what it carries: zero mean, at most about 2 */
 } ptie_parcel;
-ptie_parcel ptie_stream_at(const ptie_stream *stream, float x, float y);
+
+/* The same of a line of points. */
+typedef struct ptie_parcels {
+    float x[PTIE_LINE], across[PTIE_LINE], width[PTIE_LINE], gust[PTIE_LINE];
+} ptie_parcels;
+void ptie_stream_line(const ptie_stream *stream, ptie_parcels *parcels, const float *x,
+                      const float *y);
+
+PTIE_INLINE ptie_parcel ptie_parcel_of(const ptie_parcels *parcels, int i) {
+    return (ptie_parcel){parcels->x[i], parcels->across[i], parcels->width[i], parcels->gust[i]};
+}
 
 #endif

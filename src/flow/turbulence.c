@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "fft/fft.h"
@@ -35,14 +36,10 @@ ptie_turbulence_params ptie_turbulence_draw(const ptie_scene *scene, ptie_random
 
 /* Amplitude and turning rate of the modes with kx^2 + ky^2 = k2, for k2 up to `limit`^2. */
 typedef struct spectrum_table {
-    float *amplitude, *turns;
+    float *amplitude, *turns; /* of mode 0: 0 */
     int32_t limit;
     double variance; /* of a phase screen with r0 = 1 unit */
 } spectrum_table;
-
-static int32_t signed_mode(int32_t index, int32_t cells) {
-    return index < cells / 2 ? index : index - cells;
-}
 
 static void tabulate(spectrum_table *table, const ptie_turbulence_params *params) {
     int32_t limit = table->limit;
@@ -67,38 +64,51 @@ static double spline_symbol(int32_t mode, int32_t cells) {
     return (2 + cos(TWO_PI * mode / cells)) / 3;
 }
 
-/* Two complex normal numbers of this mode, turned by time, scaled; one for each plane. */
-static void draw_mode(float *plane_a, float *plane_b, int32_t kx, int32_t ky, uint64_t key,
-                      float scale, float turns) {
-    uint32_t counter[4] = {(uint32_t)(uint16_t)kx << 16 | (uint16_t)ky, PTIE_STREAM_TEXTURE, 0, 0};
-    uint32_t philox_key[2] = {(uint32_t)key, (uint32_t)(key >> 32)}, word[4];
-    ptie_philox(word, counter, philox_key);
-    float *planes[2] = {plane_a, plane_b};
-    for (int p = 0; p < 2; p++) {
-        uint32_t a = word[2 * p], b = word[2 * p + 1];
-        float radius = scale * sqrtf(-2 * logf(((float)(a >> 8) + 1) * 0x1p-24f));
-        float rate = (float)(a & 255) / 127.5f - 1; /* the bits that the radius left over */
-        float turn = (float)(b >> 8) * 0x1p-24f + rate * turns;
-        float angle = (float)TWO_PI * (turn - floorf(turn));
-        planes[p][0] = radius * cosf(angle);
-        planes[p][1] = radius * sinf(angle);
+/* A complex normal number of standard deviation `scale`, turned by time, from two random words. */
+PTIE_INLINE void draw_mode(float *mode, uint32_t a, uint32_t b, float scale, float turns) {
+    const float uniform = (float)(int32_t)((a >> 8) + 1) * 0x1p-24f;
+    const float rate = (float)(int32_t)(a & 255) / 127.5f - 1; /* bits that the radius left over */
+    const float turn = (float)(int32_t)(b >> 8) * 0x1p-24f + rate * turns;
+    const float radius = scale * sqrtf(-2 * ptie_logf(uniform));
+    float sine, cosine;
+    ptie_turnf(turn - ptie_floorf(turn), &sine, &cosine);
+    mode[0] = radius * cosine;
+    mode[1] = radius * sine;
+}
+
+/* Modes (kx, ky) for kx = first .. first + count - 1, for both planes. */
+PTIE_CLONES static void draw_modes(float *plane_a, float *plane_b, int32_t first, int32_t count,
+                                   int32_t ky, const float *scale, const float *turns,
+                                   uint64_t key) {
+    const uint32_t philox_key[2] = {(uint32_t)key, (uint32_t)(key >> 32)};
+    for (int32_t i = 0; i < count; i++) {
+        const uint32_t kx = (uint32_t)(first + i) & 0xffff;
+        const uint32_t counter[4] = {kx << 16 | ((uint32_t)ky & 0xffff), PTIE_STREAM_TEXTURE, 0, 0};
+        uint32_t word[4];
+        ptie_philox(word, counter, philox_key);
+        draw_mode(plane_a + 2 * i, word[0], word[1], scale[i], turns[i]);
+        draw_mode(plane_b + 2 * i, word[2], word[3], scale[i], turns[i]);
     }
 }
 
-/* The spectra of both planes; a plane's real and imaginary parts are two independent fields. */
+/* The spectra of both planes; a plane's real and imaginary parts are two independent fields.  `row`:
+   scratch of 2 * cells floats. */
 static void fill_spectra(float *a, float *b, const spectrum_table *table, const double *symbol,
-                         const ptie_turbulence_params *params) {
-    int32_t cells = params->cells, limit = table->limit;
-    double gain = (double)cells * cells / sqrt(table->variance);
-    for (int32_t y = 0; y < cells; y++) {
-        int32_t ky = signed_mode(y, cells);
-        for (int32_t x = 0; x < cells; x++) {
-            int32_t kx = signed_mode(x, cells), k2 = kx * kx + ky * ky;
-            if (k2 == 0 || k2 > limit * limit) continue;
-            size_t at = 2 * ((size_t)y * (size_t)cells + (size_t)x);
-            double scale = gain * (double)table->amplitude[k2] / (symbol[x] * symbol[y]);
-            draw_mode(a + at, b + at, kx, ky, params->key, (float)scale, table->turns[k2]);
+                         float *row, const ptie_turbulence_params *params) {
+    const int32_t cells = params->cells, limit = table->limit;
+    const double gain = (double)cells * cells / sqrt(table->variance);
+    float *scale = row, *turns = row + cells;
+    for (int32_t ky = -limit; ky <= limit; ky++) {
+        const int32_t y = ky & (cells - 1), reach = (int32_t)sqrt(limit * limit - ky * ky);
+        for (int32_t kx = -reach; kx <= reach; kx++) {
+            const int32_t x = kx & (cells - 1), k2 = kx * kx + ky * ky;
+            scale[x] = (float)(gain / (symbol[x] * symbol[y]) * (double)table->amplitude[k2]);
+            turns[x] = table->turns[k2];
         }
+        const size_t at = 2 * (size_t)y * (size_t)cells, left = (size_t)(cells - reach);
+        draw_modes(a + at, b + at, 0, reach + 1, ky, scale, turns, params->key);
+        draw_modes(a + at + 2 * left, b + at + 2 * left, -reach, reach, ky, scale + left,
+                   turns + left, params->key);
     }
 }
 
@@ -121,7 +131,7 @@ static ptie_status synthesise(ptie_turbulence *turbulence, const ptie_turbulence
     size_t rings = (size_t)(table.limit * table.limit) + 1;
     ptie_fft *fft = NULL;
     ptie_slicer slicer = {0};
-    float *planes[2] = {0}, *image = NULL;
+    float *planes[2] = {0}, *image = NULL, *row = NULL;
     double *symbol = NULL;
     ptie_status status = PTIE_OK;
     PTIE_TRY_DONE(ptie_fft_create(&fft, PTIE_FFT_COMPLEX, cells, cells));
@@ -132,13 +142,14 @@ static ptie_status synthesise(ptie_turbulence *turbulence, const ptie_turbulence
         table.amplitude = ptie_slice(&slicer, rings, sizeof(float));
         table.turns = ptie_slice(&slicer, rings, sizeof(float));
         symbol = ptie_slice(&slicer, n, sizeof(double));
+        row = ptie_slice(&slicer, 2 * n, sizeof(float));
         if (pass == 0)
             PTIE_TRY_DONE(
                 ptie_alloc_status(&slicer.base, slicer.used, 1, "scratch of the turbulence"));
     }
     tabulate(&table, params);
     for (int32_t i = 0; i < cells; i++) symbol[i] = spline_symbol(i, cells);
-    fill_spectra(planes[0], planes[1], &table, symbol, params);
+    fill_spectra(planes[0], planes[1], &table, symbol, row, params);
     for (int p = 0; p < 2; p++) {
         ptie_fft_inverse(fft, image, planes[p]);
         weave(turbulence, image, p);
@@ -170,31 +181,53 @@ void ptie_turbulence_free(ptie_turbulence *turbulence) {
     turbulence->values = NULL;
 }
 
-/* Integer part of u modulo cells (a power of two), fraction in t, cubic B-spline weights. */
-static int32_t spline_weights(float weight[4], float u, int32_t cells) {
-    int32_t whole = (int32_t)u;
-    whole -= u < (float)whole;
-    float t = u - (float)whole, s = 1 - t;
-    weight[0] = s * s * s / 6;
-    weight[1] = 2.0f / 3 - t * t * (1 - t / 2);
-    weight[2] = 2.0f / 3 - s * s * (1 - s / 2);
-    weight[3] = t * t * t / 6;
-    return (whole - 1) & (cells - 1);
+/* Where points lie between the nodes along one axis: the first of four, and their weights. */
+typedef struct knots {
+    int32_t first[PTIE_LINE];
+    float weight[4][PTIE_LINE];
+} knots;
+
+/* Integer part of u modulo cells (a power of two), cubic B-spline weights of its fraction;
+   u = x * scale - drift. */
+PTIE_CLONES static void find_knots(knots *at, const float *x, int count, float scale, float drift,
+                                   int32_t cells) {
+    for (int i = 0; i < count; i++) {
+        const float u = x[i] * scale - drift, whole = ptie_floorf(u), t = u - whole, s = 1 - t;
+        at->first[i] = ((int32_t)whole - 1) & (cells - 1);
+        at->weight[0][i] = s * s * s * (1.0f / 6);
+        at->weight[1][i] = 2.0f / 3 - t * t * (1 - t / 2);
+        at->weight[2][i] = 2.0f / 3 - s * s * (1 - s / 2);
+        at->weight[3][i] = t * t * t * (1.0f / 6);
+    }
+}
+
+/* The fields of one node, in one register. */
+typedef float node __attribute__((vector_size(FIELDS * sizeof(float))));
+
+static void interpolate(const ptie_turbulence *turbulence, float fields[][FIELDS], const float *x,
+                        const float *y, int count) {
+    const int32_t cells = turbulence->cells;
+    knots across, down;
+    find_knots(&across, x, count, turbulence->cells_per_unit, turbulence->drift, cells);
+    find_knots(&down, y, count, turbulence->cells_per_unit, 0, cells);
+    for (int n = 0; n < count; n++) {
+        node sum[4] = {0}; /* down the four columns */
+        for (int j = 0; j < 4; j++) {
+            size_t row = (size_t)((down.first[n] + j) & (cells - 1)) * (size_t)(cells + 3);
+            const node *from = (const node *)(const void *)turbulence->values + row + across.first[n];
+            for (int i = 0; i < 4; i++) sum[i] += down.weight[j][n] * from[i];
+        }
+        for (int i = 1; i < 4; i++) sum[i] *= across.weight[i][n];
+        sum[0] = sum[0] * across.weight[0][n] + sum[1] + (sum[2] + sum[3]);
+        memcpy(fields[n], sum, sizeof sum[0]);
+    }
 }
 
 void ptie_turbulence_at(const ptie_turbulence *turbulence, float x, float y, float fields[FIELDS]) {
-    int32_t cells = turbulence->cells;
-    float across[4], down[4], sum[FIELDS] = {0};
-    int32_t left =
-        spline_weights(across, x * turbulence->cells_per_unit - turbulence->drift, cells);
-    int32_t top = spline_weights(down, y * turbulence->cells_per_unit, cells);
-    for (int j = 0; j < 4; j++) {
-        size_t row = (size_t)((top + j) & (cells - 1)) * (size_t)(cells + 3) + (size_t)left;
-        const float *cell = turbulence->values + row * FIELDS;
-        for (int i = 0; i < 4; i++) {
-            float weight = across[i] * down[j];
-            for (int c = 0; c < FIELDS; c++) sum[c] += weight * cell[i * FIELDS + c];
-        }
-    }
-    for (int c = 0; c < FIELDS; c++) fields[c] = sum[c];
+    interpolate(turbulence, (float(*)[FIELDS])fields, &x, &y, 1);
+}
+
+void ptie_turbulence_line(const ptie_turbulence *turbulence, float fields[PTIE_LINE][FIELDS],
+                          const float *x, const float *y) {
+    interpolate(turbulence, fields, x, y, PTIE_LINE);
 }

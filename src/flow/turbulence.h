@@ -28,9 +28,12 @@ typedef struct ptie_turbulence {
 ptie_status ptie_turbulence_create(ptie_turbulence *out, const ptie_turbulence_params *params);
 void ptie_turbulence_free(ptie_turbulence *turbulence); /* a zeroed one is fine */
 
-/* Zero-mean fields of variance 1 at a point. */
+/* Zero-mean fields of variance 1 at a point, or at a line of points. */
 void ptie_turbulence_at(const ptie_turbulence *turbulence, float x, float y,
                         float fields[PTIE_TURBULENCE_FIELDS]);
+void ptie_turbulence_line(const ptie_turbulence *turbulence,
+                          float fields[PTIE_LINE][PTIE_TURBULENCE_FIELDS], const float *x,
+                          const float *y);
 
 /* A realisation as the scene's time finds it, drifting at `speed` (units per second) and turning
    over as it goes.  `inner` is a share of `outer`; the tile is as large as the frame or twice the

@@ -5,6 +5,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "base/clones.h"
 #include "base/image.h"
 #include "base/memory.h"
 #include "optics/plan.h"
@@ -100,7 +101,7 @@ static ptie_status constant_intensity(float *value, const float *i_zero,
 /* I+- = I0 (1 +- signal).  The darker plane is counted from the rounded brighter one: their
    difference, which carries the phase, is then rounded once and at the finer step (docs/math.md
    M9). */
-static void set_planes(float *i_plus, float *i_minus, const float *signal, double intensity,
+PTIE_CLONES static void set_planes(float *i_plus, float *i_minus, const float *signal, double intensity,
                        size_t count) {
     for (size_t i = 0; i < count; i++) {
         const double step = intensity * fabs((double)signal[i]);

@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "base/clones.h"
 #include "base/image.h"
 
 #define LEAST_STEP_M 1e-9
@@ -59,29 +60,32 @@ ptie_status ptie_tie_weigh(ptie_tie_weights *weights, ptie_planes planes,
     return PTIE_FAIL(PTIE_EINVAL, "solver: unknown planes (expected 0..2, found %d)", (int)planes);
 }
 
-/* Mean of (I+ + I-) / 2, row by row. */
-static double mean_of_pair(const float *i_plus, const float *i_minus, size_t width, size_t height) {
-    double sum = 0;
-    for (size_t y = 0; y < height; y++) {
-        double row = 0;
-        for (size_t i = y * width; i < (y + 1) * width; i++)
-            row += (double)i_plus[i] + (double)i_minus[i];
-        sum += row;
-    }
-    return sum / (2 * (double)width * (double)height);
+/* Mean of (I+ + I-) / 2. */
+PTIE_CLONES static double mean_of_pair(const float *i_plus, const float *i_minus, size_t count) {
+    enum { LANES = 16 };
+    double lane[LANES] = {0}, sum = 0;
+    size_t i = 0;
+    for (; i + LANES <= count; i += LANES)
+        for (int k = 0; k < LANES; k++) lane[k] += (double)i_plus[i + (size_t)k] + (double)i_minus[i + (size_t)k];
+    for (; i < count; i++) sum += (double)i_plus[i] + (double)i_minus[i];
+    for (int k = 0; k < LANES; k++) sum += lane[k];
+    return sum / (2 * (double)count);
+}
+
+PTIE_CLONES static void scale_difference(float *difference, const float *a, const float *b,
+                                         double scale, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        difference[i] = (float)(scale * ((double)a[i] - (double)b[i]));
 }
 
 static ptie_status pair_derivative(float *derivative, const ptie_tie_weights *weights,
-                                   const float *i_plus, const float *i_minus, size_t width,
-                                   size_t height) {
-    const double mean = mean_of_pair(i_plus, i_minus, width, height);
+                                   const float *i_plus, const float *i_minus, size_t count) {
+    const double mean = mean_of_pair(i_plus, i_minus, count);
     if (!(mean > 0))
         return PTIE_FAIL(PTIE_ENUMERIC,
                          "i_plus, i_minus: mean intensity is not positive (expected > 0, found %g)",
                          mean);
-    const double scale = weights->plus / mean;
-    for (size_t i = 0; i < width * height; i++)
-        derivative[i] = (float)(scale * ((double)i_plus[i] - (double)i_minus[i]));
+    scale_difference(derivative, i_plus, i_minus, weights->plus / mean, count);
     return PTIE_OK;
 }
 
@@ -97,7 +101,7 @@ static ptie_status check_divisor(const float *i_zero, size_t width, size_t heigh
 
 /* With I0 measured, every pixel is divided by its own.  i_minus NULL: its weight is 0.  The weights
    sum to 0, so differences from I0 are weighed: what is common to the planes cancels exactly. */
-static void pixelwise_derivative(float *derivative, const ptie_tie_weights *weights,
+PTIE_CLONES static void pixelwise_derivative(float *derivative, const ptie_tie_weights *weights,
                                  const float *i_plus, const float *i_zero, const float *i_minus,
                                  size_t count) {
     for (size_t i = 0; i < count; i++) {
@@ -120,7 +124,7 @@ ptie_status ptie_tie_derivative(float *derivative, const ptie_solver_params *par
     PTIE_TRY(ptie_image_finite(i_plus, w, h, "i_plus"));
     if (i_minus) PTIE_TRY(ptie_image_finite(i_minus, w, h, "i_minus"));
     if (!i_zero)
-        return pair_derivative(derivative, &weights, i_plus, i_minus, (size_t)w, (size_t)h);
+        return pair_derivative(derivative, &weights, i_plus, i_minus, (size_t)w * (size_t)h);
     PTIE_TRY(ptie_image_finite(i_zero, w, h, "i_zero"));
     PTIE_TRY(check_divisor(i_zero, (size_t)w, (size_t)h));
     pixelwise_derivative(derivative, &weights, i_plus, i_zero, i_minus, (size_t)w * (size_t)h);

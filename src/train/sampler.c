@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "train/sampler.h"
 
+#include "base/clones.h"
+#include "base/image.h"
 #include "base/memory.h"
 #include "base/random.h"
 #include "optics/optics.h"
@@ -105,15 +107,11 @@ static ptie_status draw_flow(const ptie_sampler *sampler, uint64_t seed, uint64_
 }
 
 /* To [0, 1]; a constant map becomes 0 with scale 0. */
-static void normalise(float *map, size_t count, float *offset, float *scale) {
-    float low = map[0], high = map[0];
-    for (size_t i = 1; i < count; i++) {
-        low = map[i] < low ? map[i] : low;
-        high = map[i] > high ? map[i] : high;
-    }
-    const float range = high - low, divisor = range > 0 ? range : 1;
-    for (size_t i = 0; i < count; i++) map[i] = (map[i] - low) / divisor;
-    *offset = low;
+PTIE_CLONES static void normalise(float *map, size_t count, float *offset, float *scale) {
+    const ptie_extent e = ptie_image_extent(map, count);
+    const float range = e.high - e.low, divisor = range > 0 ? range : 1;
+    for (size_t i = 0; i < count; i++) map[i] = (map[i] - e.low) / divisor;
+    *offset = e.low;
     *scale = range;
 }
 
