@@ -60,6 +60,18 @@ void ptie_conv3x3_pack(float *packed, const float *weights, int32_t out_channels
 void ptie_conv3x3_pack_adjoint(float *packed, const float *weights, int32_t out_channels,
                                int32_t in_channels);
 
+/* Minimal filtering F(4,3) down the columns, docs/math.md (N9): strips of 4 output rows in 6 parts.
+ * Weights (O/8, 6, I, 3, 8), otherwise as above. */
+#define PTIE_WINOGRAD_ROWS 4
+#define PTIE_WINOGRAD_PARTS 6
+size_t ptie_winograd_packed(int32_t out_channels, int32_t in_channels); /* floats */
+void ptie_winograd_pack(float *packed, const float *weights, int32_t out_channels,
+                        int32_t in_channels, const float *scale);
+void ptie_winograd_pack_adjoint(float *packed, const float *weights, int32_t out_channels,
+                                int32_t in_channels);
+/* Floats that winograd3x3 or conv3x3_weights need between these numbers of channels. */
+size_t ptie_winograd_scratch(int32_t out_channels, int32_t in_channels);
+
 #define PTIE_SSIM_WINDOW 11
 
 /* Independent chains of multiply_add: a multiple of what every level keeps in registers at once. */

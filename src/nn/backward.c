@@ -66,7 +66,7 @@ static void unconvolve(const ptie_stepper *stepper, const ptie_op *op, ptie_samp
         const ptie_map band = ptie_map_rows(grad, y, rows), z_band = ptie_map_rows(z, y, rows);
         const ptie_map in_band = ptie_map_rows(in, y, rows);
         kernels->normalise_backward(&band, &z_band, stepper->norms[op->conv]);
-        kernels->conv3x3_weights(sample->weights, &band, &in_band);
+        kernels->conv3x3_weights(sample->weights, &band, &in_band, NULL);
     }
     if (op->in.tensor != stepper->model->graph.input.tensor)
         kernels->conv3x3(&in_grad, &grad, stepper->packed_adjoint[op->conv], NULL, false);

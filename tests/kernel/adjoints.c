@@ -43,7 +43,9 @@ static void check_conv3x3(const ptie_kernels *kernels, ptie_random *random) {
 
     /* The convolution is linear in its weights too: <A_w x, y> = <w, gradient>. */
     double gradient[OUT * IN * 9] = {0}, product = 0;
-    kernels->conv3x3_weights(gradient, &y.map, &x.map);
+    float *scratch = malloc(ptie_winograd_scratch(OUT, IN) * sizeof *scratch);
+    kernels->conv3x3_weights(gradient, &y.map, &x.map, scratch);
+    free(scratch);
     for (int i = 0; i < OUT * IN * 9; i++) product += gradient[i] * (double)weights[i];
     assert_near(product, block_dot(&ax, &y), 3e-8 * sqrt(block_dot(&ax, &ax) * block_dot(&y, &y)));
     block_free(&x), block_free(&ax), block_free(&y), block_free(&ay);

@@ -108,21 +108,122 @@ static double lane_terms(const twin *t, int32_t rows) {
     return rows * ((t->width + 7) / 8) + 6;
 }
 
-static void test_conv3x3_weights(twin *t) {
-    const size_t count = (size_t)t->out_channels * (size_t)t->in_channels * 9;
+/* Magnitudes of the matrices of minimal filtering F(4,3), docs/math.md (N9). */
+static const double input_matrix[6][6] = {{4, 0, 5, 0, 1, 0}, {0, 4, 4, 1, 1, 0},
+                                          {0, 4, 4, 1, 1, 0}, {0, 2, 1, 2, 1, 0},
+                                          {0, 2, 1, 2, 1, 0}, {0, 4, 0, 5, 0, 1}};
+static const double output_matrix[4][6] = {
+    {1, 1, 1, 1, 1, 0}, {0, 1, 1, 2, 2, 0}, {0, 1, 1, 4, 4, 0}, {0, 1, 1, 8, 8, 1}};
+static const double weight_matrix[6][3] = {{1. / 4, 0, 0},
+                                           {1. / 6, 1. / 6, 1. / 6},
+                                           {1. / 6, 1. / 6, 1. / 6},
+                                           {1. / 24, 1. / 12, 1. / 6},
+                                           {1. / 24, 1. / 12, 1. / 6},
+                                           {0, 0, 1}};
+
+/* Part j of the magnitudes of the six rows that begin above row y. */
+static double input_part(const block *in_abs, int j, int32_t c, int32_t y, int32_t x) {
+    double sum = 0;
+    for (int r = 0; r < 6; r++) {
+        int32_t row = y - 1 + r < in_abs->map.height ? y - 1 + r : in_abs->map.height;
+        sum += input_matrix[j][r] * (double)*block_pixel(in_abs, c, row, x);
+    }
+    return sum;
+}
+
+/* What the magnitudes of weights and pixels add up to on the way through the parts: what rounding
+   is relative to. */
+static void winograd_magnitude(block *out, const block *in_abs, const float *weights_abs,
+                               const float *bias_abs) {
+    const ptie_map *map = &out->map;
+    const int32_t inputs = in_abs->map.channels;
+    for (int32_t o = 0; o < map->channels; o++)
+        for (int32_t y = 0; y < map->height; y++)
+            for (int32_t x = 0; x < map->width; x++) {
+                double sum = (double)bias_abs[o];
+                for (int32_t i = 0; i < 3 * inputs; i++)
+                    for (int j = 0; j < 6; j++) {
+                        const float *taps = &weights_abs[(o * inputs + i / 3) * 9 + i % 3];
+                        double weight = 0;
+                        for (int k = 0; k < 3; k++)
+                            weight += weight_matrix[j][k] * (double)taps[3 * k];
+                        sum += output_matrix[y % 4][j] * weight *
+                               input_part(in_abs, j, i / 3, y - y % 4, x + i % 3 - 1);
+                    }
+                *block_pixel(out, o, y, x) = (float)sum;
+            }
+}
+
+static void test_winograd3x3(twin *t) {
+    const size_t weight_count = (size_t)t->out_channels * (size_t)t->in_channels * 9;
     block in = block_make(t->in_channels, t->height, t->width, &t->random),
           in_abs = block_absolute(&in);
+    block found = block_make(t->out_channels, t->height, t->width, &t->random);
+    block expected = block_copy(&found), magnitude = block_copy(&found);
+    float *weights = make_floats(t, weight_count), *bias = make_floats(t, (size_t)t->out_channels);
+    float *weights_abs = magnitudes(weights, weight_count),
+          *bias_abs = magnitudes(bias, (size_t)t->out_channels);
+    float *packed = malloc(ptie_winograd_packed(t->out_channels, t->in_channels) * sizeof *packed);
+    float *direct = malloc(ptie_conv3x3_packed(t->out_channels, t->in_channels) * sizeof *direct);
+    float *scratch =
+        malloc(ptie_winograd_scratch(t->out_channels, t->in_channels) * sizeof *scratch);
+    ptie_winograd_pack(packed, weights, t->out_channels, t->in_channels, NULL);
+    ptie_conv3x3_pack(direct, weights, t->out_channels, t->in_channels, NULL);
+    winograd_magnitude(&magnitude, &in_abs, weights_abs, bias_abs);
+    /* Roundings in a row: 1 of the weights, 6 of the input's transform, 3 I products and sums, 6 of
+       the output's, 1 of the bias; the direct sums are shorter and of smaller magnitude. */
+    const double factor = 2 * gamma_n(3 * t->in_channels + 14);
+    for (int variant = 0; variant < 3; variant++) {
+        const float *used = variant ? bias : NULL;
+        t->kernels->winograd3x3(&found.map, &in.map, packed, used, variant == 2, scratch);
+        t->scalar->winograd3x3(&expected.map, &in.map, packed, used, variant == 2, scratch);
+        compare(t, &found, &expected, &magnitude, factor, NULL, "winograd3x3");
+        t->scalar->conv3x3(&expected.map, &in.map, direct, used, variant == 2);
+        compare(t, &found, &expected, &magnitude, factor + 2 * gamma_n(9 * t->in_channels), NULL,
+                "winograd3x3, direct");
+    }
+    block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected),
+        block_free(&magnitude);
+    free(weights), free(bias), free(weights_abs), free(bias_abs);
+    free(packed), free(direct), free(scratch);
+}
+
+/* Magnitude of the gradient of one tap: over strips and parts, |G'| (|A| |g|) (|B'| |d|). */
+static double gradient_magnitude(const block *g_abs, const block *in_abs, int32_t o, int32_t i,
+                                 int32_t tap) {
+    double total = 0;
+    for (int32_t y = 0; y < g_abs->map.height; y += 4)
+        for (int32_t x = 0; x < g_abs->map.width; x++)
+            for (int j = 0; j < 6; j++) {
+                double gradient = 0;
+                for (int r = 0; r < 4 && y + r < g_abs->map.height; r++)
+                    gradient += output_matrix[r][j] * (double)*block_pixel(g_abs, o, y + r, x);
+                total += weight_matrix[j][tap / 3] * gradient *
+                         input_part(in_abs, j, i, y, x + tap % 3 - 1);
+            }
+    return total;
+}
+
+static void test_conv3x3_weights(twin *t) {
+    const int32_t inputs = t->in_channels;
+    const size_t count = (size_t)t->out_channels * (size_t)inputs * 9;
+    block in = block_make(inputs, t->height, t->width, &t->random), in_abs = block_absolute(&in);
     block g = block_make(t->out_channels, t->height, t->width, &t->random),
           g_abs = block_absolute(&g);
     double *sums = calloc(3 * count, sizeof *sums);
-    for (size_t i = 0; i < count; i++) sums[i] = sums[count + i] = 0.5; /* it adds */
-    t->kernels->conv3x3_weights(sums, &g.map, &in.map);
-    t->scalar->conv3x3_weights(sums + count, &g.map, &in.map);
-    t->scalar->conv3x3_weights(sums + 2 * count, &g_abs.map, &in_abs.map);
-    compare_sums(t, sums, sums + count, sums + 2 * count, gamma_n(lane_terms(t, t->height)), count,
-                 "conv3x3_weights");
+    float *scratch = malloc(ptie_winograd_scratch(t->out_channels, inputs) * sizeof *scratch);
+    for (size_t i = 0; i < count; i++) {
+        sums[i] = sums[count + i] = 0.5; /* it adds */
+        const int32_t o = (int32_t)i / 9 / inputs, c = (int32_t)i / 9 % inputs;
+        sums[2 * count + i] = gradient_magnitude(&g_abs, &in_abs, o, c, (int32_t)i % 9);
+    }
+    t->kernels->conv3x3_weights(sums, &g.map, &in.map, scratch);
+    t->scalar->conv3x3_weights(sums + count, &g.map, &in.map, scratch);
+    /* 6 + 4 roundings of the transforms, then the lanes. */
+    compare_sums(t, sums, sums + count, sums + 2 * count,
+                 gamma_n(10 + lane_terms(t, (t->height + 3) / 4)), count, "conv3x3_weights");
     block_free(&in), block_free(&in_abs), block_free(&g), block_free(&g_abs);
-    free(sums);
+    free(sums), free(scratch);
 }
 
 static void test_conv1x1(twin *t) {
@@ -372,7 +473,8 @@ static void test_window_adjoint(twin *t) {
     check_window(t, true);
 }
 
-/* A round multiplies the error that is there by |factor| < 1 and adds that of a product and a sum. */
+/* A round multiplies the error that is there by |factor| < 1 and adds that of a product and a sum.
+ */
 static void test_multiply_add(twin *t) {
     float *found = make_floats(t, PTIE_CHAIN_FLOATS), expected[PTIE_CHAIN_FLOATS];
     memcpy(expected, found, sizeof expected);
@@ -404,6 +506,12 @@ static void run_cases(void (*test)(twin *)) {
             t.out_channels = channel_counts[i / CHANNEL_COUNTS];
             t.width = widths[i % 4];
             t.height = 1 + i % 5;
+            test(&t);
+        }
+        static const int32_t large[][4] = {{3, 9, 300, 18}, {2, 3, 40, 70}}; /* several tiles */
+        for (int i = 0; i < 2; i++) {
+            t.in_channels = large[i][0], t.out_channels = large[i][1];
+            t.width = large[i][2], t.height = large[i][3];
             test(&t);
         }
     }

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* 3x3 convolution and the gradient of its weights.
+/* 3x3 convolution, every product as it stands.
  *
  * What decides is how often a loaded number is used while it is in a register.  Forward, a block of
  * OUT output channels times PIXELS vectors of pixels keeps its sums in registers: every input
  * vector feeds OUT multiply-adds, every weight PIXELS.  With 32 registers (AVX-512) 8 x 2 reaches
- * 96-99 % of the peak; with 16 (AVX2) the same block is done in two halves of 4 x 2.  The gradient
- * of the weights keeps OUT output channels times the 3 taps of a row in registers, each a vector
- * that is summed at the end of the band.
+ * 96-99 % of the peak; with 16 (AVX2) the same block is done in two halves of 4 x 2.
  */
 #include <string.h>
 
@@ -82,44 +80,4 @@ void VEC(conv3x3)(const ptie_map *out, const ptie_map *in, const float *weights,
                          weights + o / PTIE_CONV_BLOCK * block_floats + o % PTIE_CONV_BLOCK,
                          block_bias, o, y, relu);
         }
-}
-
-/* Adds one vector of pixels: the gradients of OUT channels times the input under each tap. */
-INLINE void weigh_taps(vf sum[OUT][3], const float *const row[OUT], const float *in, int32_t x,
-                       int32_t width) {
-    vf pixel[3];
-    UNROLL (k, 3) pixel[k] = vf_load(in + x + k - 1);
-    UNROLL (o, OUT) {
-        const vf g = vf_hold(vf_first(vf_load(row[o] + x), width - x));
-        UNROLL (k, 3) sum[o][k] += g * pixel[k];
-    }
-}
-
-/* Adds the gradient of OUT x 3 weights: one input channel, one row of the window; `in` is the first
-   row under it.  Channels that do not exist repeat the last one and are not stored. */
-static void weights_block(double *grad, ptrdiff_t grad_step, const ptie_map *out_grad, int32_t o,
-                          const float *in, ptrdiff_t in_row) {
-    const int32_t channels = smaller(out_grad->channels - o, OUT);
-    const float *row[OUT];
-    for (int c = 0; c < OUT; c++) row[c] = row_of(out_grad, o + smaller(c, channels - 1), 0);
-    vf sum[OUT][3] = {{{0}}};
-    for (int32_t y = 0; y < out_grad->height; y++, in += in_row) {
-        int32_t x = 0;
-        for (; x + VEC_WIDTH <= out_grad->width; x += VEC_WIDTH)
-            weigh_taps(sum, row, in, x, x + VEC_WIDTH);
-        if (x < out_grad->width) weigh_taps(sum, row, in, x, out_grad->width);
-        for (int c = 0; c < OUT; c++) row[c] += out_grad->row;
-    }
-    UNROLL (c, OUT)
-        UNROLL (k, 3)
-            if (c < channels) grad[c * grad_step + k] += vf_sum(sum[c][k]);
-}
-
-void VEC(conv3x3_weights)(double *grad, const ptie_map *out_grad, const ptie_map *in) {
-    const ptrdiff_t step = (ptrdiff_t)in->channels * 9;
-    for (int32_t o = 0; o < out_grad->channels; o += OUT)
-        for (int32_t i = 0; i < in->channels; i++)
-            for (int32_t ky = 0; ky < 3; ky++)
-                weights_block(grad + o * step + i * 9 + ky * 3, step, out_grad, o,
-                              row_of(in, i, ky - 1), in->row);
 }

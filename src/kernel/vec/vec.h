@@ -124,6 +124,22 @@ INLINE vf vf_interleave_high(vf even, vf odd) {
     return __builtin_shufflevector(even, odd, VEC_HIGH);
 }
 
+/* Sums of the lanes of VEC_WIDTH vectors, as the lanes of one: halves folded onto each other. */
+INLINE vf vf_fold(vf *v) {
+    for (int count = VEC_WIDTH / 2; count >= 1; count /= 2)
+        UNROLL (i, count) v[i] = vf_even(v[2 * i], v[2 * i + 1]) + vf_odd(v[2 * i], v[2 * i + 1]);
+    return v[0];
+}
+
+/* Sums of the lanes of `count` vectors. */
+INLINE void vf_sums(float *sums, const vf *v, const int count) {
+    for (int first = 0; first < count; first += VEC_WIDTH) {
+        vf part[VEC_WIDTH];
+        UNROLL (i, VEC_WIDTH) part[i] = first + i < count ? v[first + i] : (vf){0};
+        vf_store_first(sums + first, vf_fold(part), count - first);
+    }
+}
+
 INLINE float *row_of(const ptie_map *map, int32_t c, int32_t y) {
     return map->data + c * map->plane + y * map->row;
 }
