@@ -1,100 +1,143 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Backward through the network, docs/math.md (N1)-(N7).  A tensor's gradient is overwritten by the
- * first operation that brings it; the maximum, which reads a skip that the decoder has read too,
- * adds.
- */
+/* Backward through the network, docs/math.md (N1)-(N7).  Of the layers that read another one's
+ * output the last in the chain comes first and overwrites its gradient; a pool, which reads a skip
+ * that a join has read too, adds. */
 #include <string.h>
 
-#include "nn/loss.h"
 #include "nn/stepper.h"
 
-/* Loss of a sample, and its gradient with respect to the network's output. */
-static void start(const ptie_stepper *stepper, size_t index, int32_t worker) {
-    const ptie_sample_state *sample = &stepper->samples[index];
-    const ptie_view output = stepper->model->graph.output;
-    const ptie_map y = ptie_layout_view(&stepper->tensors, sample->tensors, output);
-    const ptie_map grad = ptie_layout_view(&stepper->tensors, sample->gradients, output);
-    float *estimate = stepper->images[worker];
-    float *gradient = estimate + (size_t)stepper->height * (size_t)stepper->width;
-    ptie_map_store(estimate, &y);
-    ptie_loss_evaluate(stepper->engine->kernels, &stepper->parts[index], gradient, estimate,
-                       sample->clean, stepper->width, stepper->height, stepper->loss,
-                       1.0 / stepper->count, stepper->loss_scratch[worker]);
-    ptie_map_load(&grad, gradient);
+/* Gradient of z of the band's layer (N3), with a row above and below. */
+static ptie_map z_gradient(const ptie_stepper *stepper, const ptie_band *band) {
+    const int32_t k = band->layer;
+    ptie_map padded = ptie_layout_map(&stepper->z_grad, band->workspace->z_grad, k);
+    padded.height = band->rows + 2;
+    const ptie_clip inside = ptie_clip_band(&padded, band->first, stepper->maps.maps[k].height);
+    const int32_t first = inside.first, rows = inside.map.height;
+    const ptie_map z = ptie_z_rows(stepper, band->sample, k, first, rows);
+    const ptie_map grad = ptie_gradient_rows(stepper, band->sample, k, first, rows);
+    stepper->engine->kernels->normalise_backward(&inside.map, &grad, &z, stepper->norms[k]);
+    return ptie_map_rows(padded, 1, band->rows);
 }
 
-/* grad *= y (1 - y) */
-static void sigmoid_backward(const ptie_map *grad, const ptie_map *y) {
-    for (int32_t row = 0; row < y->height; row++) {
-        const float *value = y->data + row * y->row;
-        float *g = grad->data + row * grad->row;
-        for (int32_t x = 0; x < y->width; x++) g[x] *= value[x] * (1 - value[x]);
-    }
+/* Adds to the sums that BatchNorm's gradient needs from the whole batch. */
+static void add_sums(const ptie_stepper *stepper, const ptie_band *band, int32_t layer,
+                     int32_t first, int32_t rows) {
+    const ptie_map grad = ptie_gradient_rows(stepper, band->sample, layer, first, rows);
+    const ptie_map z = ptie_z_rows(stepper, band->sample, layer, first, rows);
+    stepper->engine->kernels->normalise_sums(band->sample->sums, &grad, &z, stepper->norms[layer]);
 }
 
-static void backward_op(const ptie_stepper *stepper, const ptie_op *op, size_t index) {
-    const ptie_kernels *kernels = stepper->engine->kernels;
-    const ptie_sample_state *sample = &stepper->samples[index];
-    const ptie_map in = ptie_layout_view(&stepper->tensors, sample->tensors, op->in);
-    const ptie_map out = ptie_layout_view(&stepper->tensors, sample->tensors, op->out);
-    const ptie_map in_grad = ptie_layout_view(&stepper->tensors, sample->gradients, op->in);
-    const ptie_map out_grad = ptie_layout_view(&stepper->tensors, sample->gradients, op->out);
-    switch (op->kind) {
-    case PTIE_OP_CONV: break; /* unconvolve */
-    case PTIE_OP_POOL: kernels->maxpool_backward(&in_grad, &out_grad, &in, &out); break;
-    case PTIE_OP_UPSAMPLE: kernels->upsample_backward(&in_grad, &out_grad); break;
-    case PTIE_OP_DROPOUT: ptie_dropout(stepper, &out_grad, index); break;
-    case PTIE_OP_HEAD:
-        if (stepper->model->params.output == PTIE_SIGMOID) sigmoid_backward(&out_grad, &out);
-        kernels->conv1x1_weights(sample->weights, sample->weights + in.channels, &out_grad, &in);
-        /* With one output the adjoint has the same weights in the same order. */
-        kernels->conv1x1(&in_grad, &out_grad, ptie_model_values(stepper->model, op, PTIE_WEIGHT),
-                         NULL);
+static void copy_map(const ptie_map *to, const ptie_map *from) {
+    for (int32_t c = 0; c < from->channels; c++)
+        for (int32_t y = 0; y < from->height; y++)
+            memcpy(to->data + c * to->plane + y * to->row,
+                   from->data + c * from->plane + y * from->row,
+                   (size_t)from->width * sizeof *from->data);
+}
+
+static void clear_map(const ptie_map *map) {
+    for (int32_t c = 0; c < map->channels; c++)
+        for (int32_t y = 0; y < map->height; y++)
+            memset(map->data + c * map->plane + y * map->row, 0,
+                   (size_t)map->width * sizeof *map->data);
+}
+
+/* Gradient of what the band's layer reads (N1), into `to`. */
+static void unconvolve(const ptie_stepper *stepper, const ptie_band *band, const ptie_map *to,
+                       const ptie_map *z_grad) {
+    stepper->engine->kernels->winograd3x3(to, z_grad, stepper->packed_adjoint[band->layer], NULL,
+                                          false, band->workspace->scratch);
+}
+
+static ptie_map unconvolve_aside(const ptie_stepper *stepper, const ptie_band *band,
+                                 const ptie_map *z_grad) {
+    ptie_map in_grad = ptie_layout_map(&stepper->in_grad, band->workspace->in_grad, band->layer);
+    in_grad.height = band->rows;
+    unconvolve(stepper, band, &in_grad, z_grad);
+    return in_grad;
+}
+
+static void unpool(const ptie_stepper *stepper, const ptie_band *band, const ptie_map *in,
+                   const ptie_map *z_grad) {
+    const int32_t first = 2 * band->first, rows = 2 * band->rows, before = band->layer - 1;
+    const ptie_map in_grad = unconvolve_aside(stepper, band, z_grad);
+    const ptie_map finer = ptie_band_finer(stepper, band);
+    const ptie_map grad = ptie_gradient_rows(stepper, band->sample, before, first, rows);
+    stepper->engine->kernels->maxpool_backward(&grad, &in_grad, &finer, in);
+    add_sums(stepper, band, before, first, rows);
+}
+
+static void unjoin(const ptie_stepper *stepper, const ptie_band *band, const ptie_map *z_grad) {
+    const int32_t before = band->layer - 1;
+    const int32_t skip = stepper->model->graph.layers[band->layer].skip;
+    const ptie_map in_grad = unconvolve_aside(stepper, band, z_grad);
+    const ptie_map *coarse = &stepper->maps.maps[before];
+    const ptie_map up = ptie_map_channels(in_grad, 0, coarse->channels);
+    const ptie_map rest =
+        ptie_map_channels(in_grad, coarse->channels, in_grad.channels - coarse->channels);
+    const ptie_map up_grad = ptie_gradient_rows(stepper, band->sample, before, 0, coarse->height);
+    const ptie_map skip_grad =
+        ptie_gradient_rows(stepper, band->sample, skip, band->first, band->rows);
+    stepper->engine->kernels->upsample_backward(&up_grad, &up, band->first);
+    copy_map(&skip_grad, &rest);
+}
+
+static void unconvolve_band(const ptie_stepper *stepper, const ptie_band *band) {
+    const int32_t before = band->layer - 1;
+    const ptie_map z_grad = z_gradient(stepper, band);
+    const ptie_map in = ptie_band_input(stepper, band);
+    stepper->engine->kernels->conv3x3_weights(band->sample->weights, &z_grad, &in,
+                                              band->workspace->scratch);
+    switch (stepper->model->graph.layers[band->layer].input) {
+    case PTIE_INPUT_IMAGE: break; /* nobody asks */
+    case PTIE_INPUT_SAME: {
+        const ptie_map grad =
+            ptie_gradient_rows(stepper, band->sample, before, band->first, band->rows);
+        unconvolve(stepper, band, &grad, &z_grad);
+        add_sums(stepper, band, before, band->first, band->rows);
         break;
     }
-}
-
-/* From the gradient behind a convolution's ReLU to those of its weights and its input. */
-static void unconvolve(const ptie_stepper *stepper, const ptie_op *op, ptie_sample_state *sample) {
-    const ptie_kernels *kernels = stepper->engine->kernels;
-    const ptie_map in = ptie_layout_view(&stepper->tensors, sample->tensors, op->in);
-    const ptie_map z = ptie_layout_map(&stepper->convs, sample->convs, op->conv);
-    const ptie_map grad = ptie_layout_view(&stepper->tensors, sample->gradients, op->out);
-    const ptie_map in_grad = ptie_layout_view(&stepper->tensors, sample->gradients, op->in);
-    for (int32_t y = 0; y < z.height; y += PTIE_BAND_ROWS) {
-        int32_t rows = z.height - y < PTIE_BAND_ROWS ? z.height - y : PTIE_BAND_ROWS;
-        const ptie_map band = ptie_map_rows(grad, y, rows), z_band = ptie_map_rows(z, y, rows);
-        const ptie_map in_band = ptie_map_rows(in, y, rows);
-        kernels->normalise_backward(&band, &z_band, stepper->norms[op->conv]);
-        kernels->conv3x3_weights(sample->weights, &band, &in_band, NULL);
+    case PTIE_INPUT_POOL: unpool(stepper, band, &in, &z_grad); break;
+    case PTIE_INPUT_JOIN: unjoin(stepper, band, &z_grad); break;
     }
-    if (op->in.tensor != stepper->model->graph.input.tensor)
-        kernels->conv3x3(&in_grad, &grad, stepper->packed_adjoint[op->conv], NULL, false);
 }
 
-/* Sums that BatchNorm's gradient needs from the whole batch. */
-static void sum_gradients(const ptie_stepper *stepper, const ptie_op *op,
-                          ptie_sample_state *sample) {
-    const ptie_map z = ptie_layout_map(&stepper->convs, sample->convs, op->conv);
-    const ptie_map grad = ptie_layout_view(&stepper->tensors, sample->gradients, op->out);
-    memset(sample->sums, 0, 2 * (size_t)z.channels * sizeof *sample->sums);
-    stepper->engine->kernels->normalise_sums(sample->sums, &grad, &z, stepper->norms[op->conv]);
+/* The way back through dropout: where the mask was 0 the activation is.  Where the ReLU made it 0
+   the gradient is of no interest. */
+static void drop_gradient(const ptie_map *grad, const ptie_map *dropped, float kept) {
+    for (int32_t c = 0; c < grad->channels; c++)
+        for (int32_t y = 0; y < grad->height; y++) {
+            float *g = grad->data + c * grad->plane + y * grad->row;
+            const float *value = dropped->data + c * dropped->plane + y * dropped->row;
+            for (int32_t x = 0; x < grad->width; x++) g[x] *= value[x] > 0 ? kept : 0;
+        }
 }
 
-ptie_status ptie_backward_section(void *context, size_t index, int32_t worker) {
+static void finish_join(const ptie_stepper *stepper, const ptie_band *band) {
+    const int32_t before = band->layer - 1, height = stepper->maps.maps[before].height;
+    const ptie_map grad = ptie_gradient_rows(stepper, band->sample, before, 0, height);
+    const ptie_map coarse = ptie_layout_map(&stepper->coarse, band->sample->coarse, band->layer);
+    const double rate = stepper->model->params.dropout;
+    if (stepper->model->graph.layers[band->layer].dropout && rate > 0)
+        drop_gradient(&grad, &coarse, (float)(1 / (1 - rate)));
+    add_sums(stepper, band, before, 0, height);
+}
+
+ptie_status ptie_backward_layer(void *context, size_t index, int32_t worker) {
     const ptie_stepper *stepper = context;
-    const ptie_graph *graph = &stepper->model->graph;
-    ptie_sample_state *sample = &stepper->samples[index];
-    const int32_t section = stepper->section;
-    memset(sample->weights, 0, stepper->total_count * sizeof *sample->weights);
-    if (section == graph->conv_count)
-        start(stepper, index, worker);
-    else
-        unconvolve(stepper, ptie_stepper_conv(stepper, section), sample);
-    for (int32_t i = ptie_section_last(stepper, section);
-         i-- > ptie_section_first(stepper, section);)
-        backward_op(stepper, &graph->ops[i], index);
-    if (section > 0) sum_gradients(stepper, ptie_stepper_conv(stepper, section - 1), sample);
+    const int32_t k = stepper->section;
+    const ptie_layer *layer = &stepper->model->graph.layers[k];
+    const bool join = layer->input == PTIE_INPUT_JOIN;
+    ptie_band band = ptie_band_first(stepper, k, index, worker);
+    memset(band.sample->weights, 0, stepper->total_count * sizeof *band.sample->weights);
+    memset(band.sample->sums, 0, 2 * stepper->most_channels * sizeof *band.sample->sums);
+    if (join) {
+        const ptie_map grad =
+            ptie_gradient_rows(stepper, band.sample, k - 1, 0, stepper->maps.maps[k - 1].height);
+        clear_map(&grad); /* the bands add to it */
+    }
+    for (; band.rows > 0; ptie_band_next(stepper, &band)) unconvolve_band(stepper, &band);
+    if (join) finish_join(stepper, &band);
     return PTIE_OK;
 }
 
@@ -109,11 +152,12 @@ static void join_weights(ptie_stepper *stepper, const ptie_param *param, size_t 
 }
 
 /* Gradients of gamma and beta, and the batch means that the gradient of z needs (N3). */
-static void join_norms(ptie_stepper *stepper, const ptie_op *op) {
-    const ptie_param *params = &stepper->model->graph.params[op->params];
-    const ptie_map *z = &stepper->convs.maps[op->conv];
+static void join_norms(ptie_stepper *stepper, int32_t k) {
+    const ptie_layer *layer = &stepper->model->graph.layers[k];
+    const ptie_param *params = &stepper->model->graph.params[layer->params];
+    const ptie_map *z = &stepper->maps.maps[k];
     const double pixels = (double)stepper->count * z->height * z->width;
-    for (int32_t c = 0; c < op->out.channels; c++) {
+    for (int32_t c = 0; c < layer->out_channels; c++) {
         double g = 0, gx = 0;
         for (int32_t n = 0; n < stepper->count; n++) {
             g += stepper->samples[n].sums[2 * c];
@@ -121,21 +165,21 @@ static void join_norms(ptie_stepper *stepper, const ptie_op *op) {
         }
         stepper->state[0][params[PTIE_BETA].offset + (size_t)c] = (float)g;
         stepper->state[0][params[PTIE_GAMMA].offset + (size_t)c] = (float)gx;
-        stepper->norms[op->conv][c].mean_g = (float)(g / pixels);
-        stepper->norms[op->conv][c].mean_gx = (float)(gx / pixels);
+        stepper->norms[k][c].mean_g = (float)(g / pixels);
+        stepper->norms[k][c].mean_gx = (float)(gx / pixels);
     }
+}
+
+void ptie_head_join(ptie_stepper *stepper) {
+    const ptie_graph *graph = &stepper->model->graph;
+    const ptie_param *head = &graph->params[graph->head];
+    join_weights(stepper, &head[PTIE_WEIGHT], 0);
+    join_weights(stepper, &head[PTIE_BIAS], head[PTIE_WEIGHT].count);
+    join_norms(stepper, graph->layer_count - 1);
 }
 
 void ptie_backward_join(ptie_stepper *stepper) {
     const ptie_graph *graph = &stepper->model->graph;
-    const int32_t section = stepper->section;
-    if (section == graph->conv_count) {
-        const ptie_op *head = &graph->ops[graph->op_count - 1];
-        const ptie_param *params = &graph->params[head->params];
-        join_weights(stepper, &params[PTIE_WEIGHT], 0);
-        join_weights(stepper, &params[PTIE_BIAS], params[PTIE_WEIGHT].count);
-    } else {
-        join_weights(stepper, &graph->params[ptie_stepper_conv(stepper, section)->params], 0);
-    }
-    if (section > 0) join_norms(stepper, ptie_stepper_conv(stepper, section - 1));
+    join_weights(stepper, &graph->params[graph->layers[stepper->section].params], 0);
+    if (stepper->section > 0) join_norms(stepper, stepper->section - 1);
 }

@@ -4,49 +4,63 @@
 #include "nn/denoiser.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/image.h"
 #include "base/memory.h"
 
 /* Folds the running statistics into weights and bias (N2). */
-static void fold(ptie_denoiser *denoiser, const ptie_model *model, const ptie_op *op) {
-    const float *gamma = ptie_model_values(model, op, PTIE_GAMMA);
-    const float *beta = ptie_model_values(model, op, PTIE_BETA);
-    const float *mean = ptie_model_values(model, op, PTIE_MEAN);
-    const float *variance = ptie_model_values(model, op, PTIE_VARIANCE);
+static void fold(ptie_denoiser *denoiser, const ptie_model *model, int32_t k) {
+    const ptie_layer *layer = &model->graph.layers[k];
+    const float *gamma = ptie_model_values(model, layer->params, PTIE_GAMMA);
+    const float *beta = ptie_model_values(model, layer->params, PTIE_BETA);
+    const float *mean = ptie_model_values(model, layer->params, PTIE_MEAN);
+    const float *variance = ptie_model_values(model, layer->params, PTIE_VARIANCE);
     float scale[512];
-    for (int32_t c = 0; c < op->out.channels; c++) {
+    for (int32_t c = 0; c < layer->out_channels; c++) {
         double s = (double)gamma[c] / sqrt((double)variance[c] + model->params.bn_epsilon);
         scale[c] = (float)s;
-        denoiser->bias[op->conv][c] = (float)((double)beta[c] - s * (double)mean[c]);
+        denoiser->bias[k][c] = (float)((double)beta[c] - s * (double)mean[c]);
     }
-    ptie_conv3x3_pack(denoiser->packed[op->conv], ptie_model_values(model, op, PTIE_WEIGHT),
-                      op->out.channels, op->in.channels, scale);
+    ptie_conv3x3_pack(denoiser->packed[k], ptie_model_values(model, layer->params, PTIE_WEIGHT),
+                      layer->out_channels, layer->in_channels, scale);
 }
 
 static size_t slice_block(ptie_denoiser *denoiser, void *block) {
+    const ptie_graph *graph = &denoiser->graph;
     ptie_slicer slicer = {.base = block};
-    for (int32_t i = 0; i < denoiser->graph.op_count; i++) {
-        const ptie_op *op = &denoiser->graph.ops[i];
-        const int32_t in = op->in.channels, out = op->out.channels;
-        if (op->kind == PTIE_OP_HEAD)
-            denoiser->head = ptie_slice(&slicer, (size_t)in + 1, sizeof(float));
-        if (op->kind != PTIE_OP_CONV) continue;
-        denoiser->packed[op->conv] =
-            ptie_slice(&slicer, ptie_conv3x3_packed(out, in), sizeof(float));
-        denoiser->bias[op->conv] = ptie_slice(&slicer, (size_t)out, sizeof(float));
+    for (int32_t k = 0; k < graph->layer_count; k++) {
+        const int32_t in = graph->layers[k].in_channels, out = graph->layers[k].out_channels;
+        denoiser->packed[k] = ptie_slice(&slicer, ptie_conv3x3_packed(out, in), sizeof(float));
+        denoiser->bias[k] = ptie_slice(&slicer, (size_t)out, sizeof(float));
     }
+    denoiser->head = ptie_slice(&slicer, graph->params[graph->head].count + 1, sizeof(float));
     return slicer.used;
 }
 
 static void copy_weights(ptie_denoiser *denoiser, const ptie_model *model) {
-    for (int32_t i = 0; i < model->graph.op_count; i++) {
-        const ptie_op *op = &model->graph.ops[i];
-        if (op->kind == PTIE_OP_CONV) fold(denoiser, model, op);
-        if (op->kind != PTIE_OP_HEAD) continue;
-        for (int32_t c = 0; c < op->in.channels; c++)
-            denoiser->head[c] = ptie_model_values(model, op, PTIE_WEIGHT)[c];
-        denoiser->head[op->in.channels] = *ptie_model_values(model, op, PTIE_BIAS);
+    const ptie_graph *graph = &model->graph;
+    const size_t inputs = graph->params[graph->head].count;
+    for (int32_t k = 0; k < graph->layer_count; k++) fold(denoiser, model, k);
+    memcpy(denoiser->head, ptie_model_values(model, graph->head, PTIE_WEIGHT),
+           inputs * sizeof *denoiser->head);
+    denoiser->head[inputs] = *ptie_model_values(model, graph->head, PTIE_BIAS);
+}
+
+/* A layer that is a skip writes straight into the input of the layer that joins it. */
+static void lay_out(ptie_denoiser *denoiser, int32_t height, int32_t width) {
+    const ptie_graph *graph = &denoiser->graph;
+    for (int32_t k = 0; k < graph->layer_count; k++) denoiser->joined_by[k] = -1;
+    for (int32_t k = 0; k < graph->layer_count; k++)
+        if (graph->layers[k].input == PTIE_INPUT_JOIN)
+            denoiser->joined_by[graph->layers[k].skip] = k;
+    for (int32_t k = 0; k < graph->layer_count; k++) {
+        const ptie_layer *layer = &graph->layers[k];
+        const int32_t h = height >> layer->level, w = width >> layer->level;
+        const bool own_input = layer->input != PTIE_INPUT_SAME;
+        const bool own_output = denoiser->joined_by[k] < 0;
+        ptie_layout_add(&denoiser->inputs, k, own_input ? layer->in_channels : 0, h, w);
+        ptie_layout_add(&denoiser->outputs, k, own_output ? layer->out_channels : 0, h, w);
     }
 }
 
@@ -64,8 +78,7 @@ ptie_status ptie_nn_denoiser(ptie_denoiser **out, const ptie_engine *engine,
     denoiser->output = model->params.output;
     denoiser->width = width;
     denoiser->height = height;
-    ptie_layout_tensors(&denoiser->tensors, &model->graph, (height + unit - 1) / unit * unit,
-                        (width + unit - 1) / unit * unit);
+    lay_out(denoiser, (height + unit - 1) / unit * unit, (width + unit - 1) / unit * unit);
     ptie_status status =
         ptie_alloc_status(&denoiser->block, slice_block(denoiser, NULL), 1, "denoiser");
     if (status != PTIE_OK) {
@@ -88,7 +101,8 @@ ptie_denoise_scratch ptie_denoise_slice(const ptie_denoiser *denoiser, void *scr
     ptie_slicer slicer = {.base = scratch};
     const size_t pixels = (size_t)denoiser->width * (size_t)denoiser->height;
     ptie_denoise_scratch slices;
-    slices.tensors = ptie_slice(&slicer, denoiser->tensors.floats, sizeof(float));
+    slices.inputs = ptie_slice(&slicer, denoiser->inputs.floats, sizeof(float));
+    slices.outputs = ptie_slice(&slicer, denoiser->outputs.floats, sizeof(float));
     slices.image = ptie_slice(&slicer, pixels, sizeof(float));
     slices.bytes = slicer.used;
     return slices;
@@ -116,38 +130,56 @@ static void load_frame(const ptie_denoiser *denoiser, const ptie_map *input, con
         }
 }
 
-static void run_op(const ptie_denoiser *denoiser, const ptie_op *op, float *block) {
+static ptie_map input_of(const ptie_denoiser *denoiser, const ptie_denoise_scratch *scratch,
+                         int32_t k);
+
+static ptie_map output_of(const ptie_denoiser *denoiser, const ptie_denoise_scratch *scratch,
+                          int32_t k) {
+    const int32_t join = denoiser->joined_by[k], channels = denoiser->graph.layers[k].out_channels;
+    if (join < 0) return ptie_layout_map(&denoiser->outputs, scratch->outputs, k);
+    const ptie_map joint = input_of(denoiser, scratch, join);
+    return ptie_map_channels(joint, joint.channels - channels, channels);
+}
+
+static ptie_map input_of(const ptie_denoiser *denoiser, const ptie_denoise_scratch *scratch,
+                         int32_t k) {
+    if (denoiser->graph.layers[k].input == PTIE_INPUT_SAME)
+        return output_of(denoiser, scratch, k - 1);
+    return ptie_layout_map(&denoiser->inputs, scratch->inputs, k);
+}
+
+static void run_layer(const ptie_denoiser *denoiser, const ptie_denoise_scratch *scratch,
+                      int32_t k) {
     const ptie_kernels *kernels = denoiser->kernels;
-    const ptie_map in = ptie_layout_view(&denoiser->tensors, block, op->in);
-    const ptie_map out = ptie_layout_view(&denoiser->tensors, block, op->out);
-    if (op->kind != PTIE_OP_DROPOUT) ptie_map_clear_halo(&out); /* the scratch may hold anything */
-    switch (op->kind) {
-    case PTIE_OP_CONV:
-        kernels->conv3x3(&out, &in, denoiser->packed[op->conv], denoiser->bias[op->conv], true);
-        break;
-    case PTIE_OP_POOL: kernels->maxpool(&out, &in); break;
-    case PTIE_OP_UPSAMPLE: kernels->upsample(&out, &in); break;
-    case PTIE_OP_DROPOUT: break;
-    case PTIE_OP_HEAD:
-        kernels->conv1x1(&out, &in, denoiser->head, denoiser->head + in.channels);
-        if (denoiser->output == PTIE_SIGMOID) kernels->sigmoid(&out, &out);
-        break;
+    const ptie_layer *layer = &denoiser->graph.layers[k];
+    const ptie_map in = input_of(denoiser, scratch, k), out = output_of(denoiser, scratch, k);
+    if (layer->input == PTIE_INPUT_POOL || layer->input == PTIE_INPUT_JOIN) {
+        const ptie_map before = output_of(denoiser, scratch, k - 1);
+        const ptie_map made = ptie_map_channels(in, 0, before.channels);
+        ptie_map_clear_halo(&made); /* the scratch may hold anything */
+        if (layer->input == PTIE_INPUT_POOL)
+            kernels->maxpool(&made, &before);
+        else
+            kernels->upsample(&made, &before, 0);
     }
+    ptie_map_clear_halo(&out);
+    kernels->conv3x3(&out, &in, denoiser->packed[k], denoiser->bias[k], true);
 }
 
 ptie_status ptie_nn_denoise(const ptie_denoiser *denoiser, float *clean, const float *noisy,
                             void *scratch) {
     const ptie_graph *graph = &denoiser->graph;
-    PTIE_TRY(ptie_image_finite(noisy, denoiser->width, denoiser->height * graph->input.channels,
-                               "noisy"));
-    float *block = ptie_denoise_slice(denoiser, scratch).tensors;
-    const ptie_map input = ptie_layout_view(&denoiser->tensors, block, graph->input);
+    PTIE_TRY(ptie_image_finite(noisy, denoiser->width, denoiser->height, "noisy"));
+    const ptie_denoise_scratch slices = ptie_denoise_slice(denoiser, scratch);
+    const ptie_map input = input_of(denoiser, &slices, 0);
     ptie_map_clear_halo(&input);
     load_frame(denoiser, &input, noisy);
-    for (int32_t i = 0; i < graph->op_count; i++) run_op(denoiser, &graph->ops[i], block);
-    ptie_map output = ptie_layout_view(&denoiser->tensors, block, graph->output);
-    output.width = denoiser->width; /* the crop */
-    output.height = denoiser->height;
-    ptie_map_store(clean, &output);
+    for (int32_t k = 0; k < graph->layer_count; k++) run_layer(denoiser, &slices, k);
+    ptie_map last = output_of(denoiser, &slices, graph->layer_count - 1);
+    last.width = denoiser->width; /* the crop */
+    last.height = denoiser->height;
+    const ptie_map image = {clean, 1, last.height, last.width, last.width, 0};
+    denoiser->kernels->conv1x1(&image, &last, denoiser->head, denoiser->head + last.channels);
+    if (denoiser->output == PTIE_SIGMOID) denoiser->kernels->sigmoid(&image, &image);
     return PTIE_OK;
 }

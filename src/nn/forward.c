@@ -23,77 +23,47 @@ void ptie_dropout(const ptie_stepper *stepper, const ptie_map *map, size_t sampl
         }
 }
 
-/* Convolution and the sums of its result, band by band. */
-static void convolve(const ptie_stepper *stepper, const ptie_op *op, ptie_sample_state *sample) {
-    const ptie_kernels *kernels = stepper->engine->kernels;
-    const ptie_map in = ptie_layout_view(&stepper->tensors, sample->tensors, op->in);
-    const ptie_map z = ptie_layout_map(&stepper->convs, sample->convs, op->conv);
-    memset(sample->sums, 0, 2 * (size_t)z.channels * sizeof *sample->sums);
-    for (int32_t y = 0; y < z.height; y += PTIE_BAND_ROWS) {
-        int32_t rows = z.height - y < PTIE_BAND_ROWS ? z.height - y : PTIE_BAND_ROWS;
-        const ptie_map from = ptie_map_rows(in, y, rows), to = ptie_map_rows(z, y, rows);
-        kernels->conv3x3(&to, &from, stepper->packed[op->conv], NULL, false);
-        kernels->moments(sample->sums, &to);
-    }
+/* What a join upsamples. */
+static void prepare_join(const ptie_stepper *stepper, int32_t k, size_t index) {
+    const ptie_sample_state *sample = &stepper->samples[index];
+    const ptie_map coarse = ptie_layout_map(&stepper->coarse, sample->coarse, k);
+    const ptie_map z = ptie_z_rows(stepper, sample, k - 1, 0, coarse.height);
+    stepper->engine->kernels->normalise(&coarse, &z, stepper->norms[k - 1]);
+    if (stepper->model->graph.layers[k].dropout) ptie_dropout(stepper, &coarse, index);
 }
 
-static void activate(const ptie_stepper *stepper, const ptie_op *op, ptie_sample_state *sample) {
-    const ptie_map z = ptie_layout_map(&stepper->convs, sample->convs, op->conv);
-    const ptie_map out = ptie_layout_view(&stepper->tensors, sample->tensors, op->out);
-    stepper->engine->kernels->normalise(&out, &z, stepper->norms[op->conv]);
-}
-
-static void forward_op(const ptie_stepper *stepper, const ptie_op *op, size_t index) {
-    const ptie_kernels *kernels = stepper->engine->kernels;
-    const ptie_model *model = stepper->model;
-    float *block = stepper->samples[index].tensors;
-    const ptie_map in = ptie_layout_view(&stepper->tensors, block, op->in);
-    const ptie_map out = ptie_layout_view(&stepper->tensors, block, op->out);
-    switch (op->kind) {
-    case PTIE_OP_CONV: break; /* convolve, activate */
-    case PTIE_OP_POOL: kernels->maxpool(&out, &in); break;
-    case PTIE_OP_UPSAMPLE: kernels->upsample(&out, &in); break;
-    case PTIE_OP_DROPOUT: ptie_dropout(stepper, &out, index); break;
-    case PTIE_OP_HEAD:
-        kernels->conv1x1(&out, &in, ptie_model_values(model, op, PTIE_WEIGHT),
-                         ptie_model_values(model, op, PTIE_BIAS));
-        if (model->params.output == PTIE_SIGMOID) kernels->sigmoid(&out, &out);
-        break;
-    }
-}
-
-ptie_status ptie_forward_section(void *context, size_t index, int32_t worker) {
-    (void)worker;
+/* A layer's convolution and the sums of its result. */
+ptie_status ptie_forward_layer(void *context, size_t index, int32_t worker) {
     const ptie_stepper *stepper = context;
-    const ptie_graph *graph = &stepper->model->graph;
-    ptie_sample_state *sample = &stepper->samples[index];
-    const int32_t section = stepper->section;
-    if (section == 0) {
-        const ptie_map input = ptie_layout_view(&stepper->tensors, sample->tensors, graph->input);
-        ptie_map_load(&input, sample->noisy);
-    } else {
-        activate(stepper, ptie_stepper_conv(stepper, section - 1), sample);
+    const ptie_kernels *kernels = stepper->engine->kernels;
+    const int32_t k = stepper->section;
+    const ptie_layer *layer = &stepper->model->graph.layers[k];
+    ptie_band band = ptie_band_first(stepper, k, index, worker);
+    double *sums = band.sample->sums;
+    memset(sums, 0, 2 * (size_t)layer->out_channels * sizeof *sums);
+    if (layer->input == PTIE_INPUT_JOIN) prepare_join(stepper, k, index);
+    for (; band.rows > 0; ptie_band_next(stepper, &band)) {
+        const ptie_map in = ptie_band_input(stepper, &band);
+        const ptie_map z = ptie_z_rows(stepper, band.sample, k, band.first, band.rows);
+        kernels->winograd3x3(&z, &in, stepper->packed[k], NULL, false, band.workspace->scratch);
+        kernels->moments(sums, &z);
     }
-    for (int32_t i = ptie_section_first(stepper, section); i < ptie_section_last(stepper, section);
-         i++)
-        forward_op(stepper, &graph->ops[i], index);
-    if (section < graph->conv_count) convolve(stepper, ptie_stepper_conv(stepper, section), sample);
     return PTIE_OK;
 }
 
-/* Batch statistics of the section's convolution, and the running ones (N2). */
+/* Batch statistics of the section's layer, and the running ones (N2). */
 void ptie_forward_join(ptie_stepper *stepper) {
+    const int32_t k = stepper->section;
     ptie_model *model = stepper->model;
-    if (stepper->section == model->graph.conv_count) return;
-    const ptie_op *op = ptie_stepper_conv(stepper, stepper->section);
-    const ptie_map *z = &stepper->convs.maps[op->conv];
+    const ptie_layer *layer = &model->graph.layers[k];
+    const ptie_map *z = &stepper->maps.maps[k];
     const double pixels = (double)stepper->count * z->height * z->width;
-    const float *gamma = ptie_model_values(model, op, PTIE_GAMMA);
-    const float *beta = ptie_model_values(model, op, PTIE_BETA);
-    float *running_mean = ptie_model_values(model, op, PTIE_MEAN);
-    float *running_variance = ptie_model_values(model, op, PTIE_VARIANCE);
+    const float *gamma = ptie_model_values(model, layer->params, PTIE_GAMMA);
+    const float *beta = ptie_model_values(model, layer->params, PTIE_BETA);
+    float *running_mean = ptie_model_values(model, layer->params, PTIE_MEAN);
+    float *running_variance = ptie_model_values(model, layer->params, PTIE_VARIANCE);
     const double momentum = model->params.bn_momentum;
-    for (int32_t c = 0; c < op->out.channels; c++) {
+    for (int32_t c = 0; c < layer->out_channels; c++) {
         double sum = 0, squares = 0;
         for (int32_t n = 0; n < stepper->count; n++) {
             sum += stepper->samples[n].sums[2 * c];
@@ -102,10 +72,10 @@ void ptie_forward_join(ptie_stepper *stepper) {
         double mean = sum / pixels, variance = fmax(squares / pixels - mean * mean, 0);
         double inverse_std = 1 / sqrt(variance + model->params.bn_epsilon);
         double scale = (double)gamma[c] * inverse_std;
-        stepper->norms[op->conv][c] = (ptie_norm){.scale = (float)scale,
-                                                  .shift = (float)((double)beta[c] - mean * scale),
-                                                  .mean = (float)mean,
-                                                  .inverse_std = (float)inverse_std};
+        stepper->norms[k][c] = (ptie_norm){.scale = (float)scale,
+                                           .shift = (float)((double)beta[c] - mean * scale),
+                                           .mean = (float)mean,
+                                           .inverse_std = (float)inverse_std};
         running_mean[c] = (float)(momentum * (double)running_mean[c] + (1 - momentum) * mean);
         running_variance[c] =
             (float)(momentum * (double)running_variance[c] + (1 - momentum) * variance);

@@ -5,23 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static ptie_view add_tensor(ptie_graph *graph, int32_t channels, int32_t level) {
-    assert(graph->tensor_count < PTIE_MAX_TENSORS);
-    graph->tensors[graph->tensor_count] = (ptie_tensor){channels, level};
-    return (ptie_view){graph->tensor_count++, 0, channels};
-}
-
-static ptie_view part(ptie_view tensor, int32_t first, int32_t channels) {
-    return (ptie_view){tensor.tensor, first, channels};
-}
-
-static ptie_op *add_op(ptie_graph *graph, ptie_op_kind kind, ptie_view in, ptie_view out) {
-    assert(graph->op_count < PTIE_MAX_OPS);
-    ptie_op *op = &graph->ops[graph->op_count++];
-    *op = (ptie_op){.kind = kind, .in = in, .out = out, .params = graph->param_count};
-    return op;
-}
-
 static void add_param(ptie_graph *graph, const char *stage, const char *name, bool trainable,
                       int32_t rank, const int64_t shape[4]) {
     assert(graph->param_count < PTIE_MAX_PARAMS);
@@ -37,24 +20,30 @@ static void add_param(ptie_graph *graph, const char *stage, const char *name, bo
 }
 
 /* `number` 1 or 2: which of the two convolutions of its stage. */
-static void add_conv(ptie_graph *graph, const char *stage, int number, ptie_view in,
-                     ptie_view out) {
+static void add_layer(ptie_graph *graph, const char *stage, int number, ptie_layer layer) {
     static const char *const norms[] = {"weight", "bias", "running_mean", "running_var"};
-    add_op(graph, PTIE_OP_CONV, in, out)->conv = graph->conv_count++;
+    assert(graph->layer_count < PTIE_MAX_LAYERS);
+    ptie_layer *added = &graph->layers[graph->layer_count++];
+    *added = layer;
+    added->params = graph->param_count;
     char name[24];
     snprintf(name, sizeof name, "conv%d.weight", number);
-    add_param(graph, stage, name, true, 4, (int64_t[4]){out.channels, in.channels, 3, 3});
+    add_param(graph, stage, name, true, 4,
+              (int64_t[4]){layer.out_channels, layer.in_channels, 3, 3});
     for (int i = 0; i < 4; i++) {
         snprintf(name, sizeof name, "bn%d.%s", number, norms[i]);
-        add_param(graph, stage, name, i < 2, 1, (int64_t[4]){out.channels, 1, 1, 1});
+        add_param(graph, stage, name, i < 2, 1, (int64_t[4]){layer.out_channels, 1, 1, 1});
     }
 }
 
-static void add_stage(ptie_graph *graph, const char *stage, int32_t level, ptie_view in,
-                      ptie_view out) {
-    ptie_view middle = add_tensor(graph, out.channels, level);
-    add_conv(graph, stage, 1, in, middle);
-    add_conv(graph, stage, 2, middle, out);
+/* Two convolutions; `first` says what the first one reads. */
+static void add_stage(ptie_graph *graph, const char *stage, ptie_layer first) {
+    ptie_layer second = {.level = first.level,
+                         .in_channels = first.out_channels,
+                         .out_channels = first.out_channels,
+                         .input = PTIE_INPUT_SAME};
+    add_layer(graph, stage, 1, first);
+    add_layer(graph, stage, 2, second);
 }
 
 static void place_params(ptie_graph *graph) {
@@ -71,31 +60,27 @@ static void place_params(ptie_graph *graph) {
 void ptie_graph_build(ptie_graph *graph, const ptie_model_params *params) {
     *graph = (ptie_graph){0};
     const int32_t bottom = params->levels - 1, *width = params->width;
-    ptie_view joined[PTIE_MAX_LEVELS] = {{0}}; /* per level: channels from below, then the skip */
     char stage[16];
-
-    ptie_view now = graph->input = add_tensor(graph, params->in_channels, 0);
-    for (int32_t level = 0; level < bottom; level++) {
+    for (int32_t level = 0; level <= bottom; level++) {
         snprintf(stage, sizeof stage, "enc%d", level + 1);
-        joined[level] = add_tensor(graph, width[level + 1] + width[level], level);
-        ptie_view skip = part(joined[level], width[level + 1], width[level]);
-        add_stage(graph, stage, level, now, skip);
-        now = add_tensor(graph, width[level], level + 1);
-        add_op(graph, PTIE_OP_POOL, skip, now);
+        add_stage(graph, level < bottom ? stage : "bottleneck",
+                  (ptie_layer){.level = level,
+                               .in_channels = level ? width[level - 1] : params->in_channels,
+                               .out_channels = width[level],
+                               .input = level ? PTIE_INPUT_POOL : PTIE_INPUT_IMAGE});
     }
-    ptie_view deepest = add_tensor(graph, width[bottom], bottom);
-    add_stage(graph, "bottleneck", bottom, now, deepest);
-    add_op(graph, PTIE_OP_DROPOUT, deepest, deepest);
-    now = deepest;
     for (int32_t level = bottom - 1; level >= 0; level--) {
         snprintf(stage, sizeof stage, "dec%d", level + 1);
-        add_op(graph, PTIE_OP_UPSAMPLE, now, part(joined[level], 0, width[level + 1]));
-        now = add_tensor(graph, width[level], level);
-        add_stage(graph, stage, level, joined[level], now);
+        add_stage(graph, stage,
+                  (ptie_layer){.level = level,
+                               .in_channels = width[level + 1] + width[level],
+                               .out_channels = width[level],
+                               .input = PTIE_INPUT_JOIN,
+                               .skip = 2 * level + 1, /* the second convolution of its encoder */
+                               .dropout = level == bottom - 1});
     }
-    graph->output = add_tensor(graph, 1, 0);
-    add_op(graph, PTIE_OP_HEAD, now, graph->output);
-    add_param(graph, "out", "weight", true, 4, (int64_t[4]){1, now.channels, 1, 1});
+    graph->head = graph->param_count;
+    add_param(graph, "out", "weight", true, 4, (int64_t[4]){1, width[0], 1, 1});
     add_param(graph, "out", "bias", true, 1, (int64_t[4]){1, 1, 1, 1});
     place_params(graph);
 }
@@ -106,40 +91,15 @@ const ptie_param *ptie_graph_find(const ptie_graph *graph, const char *name) {
     return NULL;
 }
 
-static void place_map(ptie_layout *layout, int32_t which, ptie_map map) {
+void ptie_layout_add(ptie_layout *layout, int32_t which, int32_t channels, int32_t height,
+                     int32_t width) {
     const size_t line = 16; /* floats in 64 bytes */
+    const ptie_map map = ptie_map_make(channels, height, width);
     layout->maps[which] = map;
     layout->offsets[which] = layout->floats;
-    layout->floats += (ptie_map_floats(&map) + line - 1) / line * line;
-}
-
-void ptie_layout_tensors(ptie_layout *layout, const ptie_graph *graph, int32_t height,
-                         int32_t width) {
-    *layout = (ptie_layout){0};
-    for (int32_t t = 0; t < graph->tensor_count; t++) {
-        ptie_tensor tensor = graph->tensors[t];
-        place_map(layout, t,
-                  ptie_map_make(tensor.channels, height >> tensor.level, width >> tensor.level));
-    }
-}
-
-void ptie_layout_convs(ptie_layout *layout, const ptie_graph *graph, int32_t height,
-                       int32_t width) {
-    *layout = (ptie_layout){0};
-    for (int32_t i = 0; i < graph->op_count; i++) {
-        const ptie_op *op = &graph->ops[i];
-        if (op->kind != PTIE_OP_CONV) continue;
-        int32_t level = graph->tensors[op->out.tensor].level;
-        place_map(layout, op->conv,
-                  ptie_map_make(op->out.channels, height >> level, width >> level));
-    }
+    if (channels > 0) layout->floats += (ptie_map_floats(&map) + line - 1) / line * line;
 }
 
 ptie_map ptie_layout_map(const ptie_layout *layout, float *block, int32_t which) {
     return ptie_map_in(layout->maps[which], block + layout->offsets[which]);
-}
-
-ptie_map ptie_layout_view(const ptie_layout *layout, float *block, ptie_view view) {
-    return ptie_map_channels(ptie_layout_map(layout, block, view.tensor), view.first,
-                             view.channels);
 }

@@ -30,11 +30,12 @@ ptie_status ptie_nn_check(const ptie_model_params *params, ptie_status status, c
 }
 
 /* Glorot and Bengio (2010), uniform: what Keras starts from. */
-static void draw_weights(ptie_model *model, const ptie_param *param, uint64_t stream_sample) {
+static void draw_weights(ptie_model *model, int32_t which) {
+    const ptie_param *param = &model->graph.params[which + PTIE_WEIGHT];
     double area = (double)(param->shape[2] * param->shape[3]);
     double limit = sqrt(6 / (area * (double)(param->shape[0] + param->shape[1])));
     ptie_random random;
-    ptie_random_init(&random, model->params.seed, PTIE_STREAM_WEIGHTS, stream_sample);
+    ptie_random_init(&random, model->params.seed, PTIE_STREAM_WEIGHTS, (uint64_t)which);
     for (size_t i = 0; i < param->count; i++)
         model->values[param->offset + i] = (float)ptie_random_uniform(&random, -limit, limit);
 }
@@ -45,14 +46,15 @@ static void fill(float *values, float value, size_t count) {
 
 /* Biases, beta and running means stay 0. */
 static void set_initial_values(ptie_model *model) {
-    for (int32_t i = 0; i < model->graph.op_count; i++) {
-        const ptie_op *op = &model->graph.ops[i];
-        if (op->kind != PTIE_OP_CONV && op->kind != PTIE_OP_HEAD) continue;
-        draw_weights(model, &model->graph.params[op->params + PTIE_WEIGHT], (uint64_t)op->params);
-        if (op->kind != PTIE_OP_CONV) continue;
-        fill(ptie_model_values(model, op, PTIE_GAMMA), 1, (size_t)op->out.channels);
-        fill(ptie_model_values(model, op, PTIE_VARIANCE), 1, (size_t)op->out.channels);
+    const ptie_graph *graph = &model->graph;
+    for (int32_t i = 0; i < graph->layer_count; i++) {
+        const ptie_layer *layer = &graph->layers[i];
+        draw_weights(model, layer->params);
+        fill(ptie_model_values(model, layer->params, PTIE_GAMMA), 1, (size_t)layer->out_channels);
+        fill(ptie_model_values(model, layer->params, PTIE_VARIANCE), 1,
+             (size_t)layer->out_channels);
     }
+    draw_weights(model, graph->head);
 }
 
 ptie_status ptie_nn_create(ptie_model **out, const ptie_model_params *params) {

@@ -24,9 +24,9 @@ struct ptie_model {
     size_t note_count;
 };
 
-/* Parameter `which` (PTIE_WEIGHT, ...) of an operation. */
-static inline float *ptie_model_values(const ptie_model *model, const ptie_op *op, int32_t which) {
-    return model->values + model->graph.params[op->params + which].offset;
+/* Parameter `which` (PTIE_WEIGHT, ...) of the layer or head whose first one is `params`. */
+static inline float *ptie_model_values(const ptie_model *model, int32_t params, int32_t which) {
+    return model->values + model->graph.params[params + which].offset;
 }
 
 /* Writes facts and name from the parameters. */

@@ -15,55 +15,100 @@ static size_t longest_weights(const ptie_graph *graph) {
     return longest + 1; /* the head's bias follows its weights */
 }
 
-static int32_t most_channels(const ptie_graph *graph) {
+static size_t most_channels(const ptie_graph *graph) {
     int32_t most = 0;
-    for (int32_t t = 0; t < graph->tensor_count; t++)
-        if (graph->tensors[t].channels > most) most = graph->tensors[t].channels;
-    return most;
+    for (int32_t k = 0; k < graph->layer_count; k++)
+        if (graph->layers[k].out_channels > most) most = graph->layers[k].out_channels;
+    return (size_t)most;
 }
 
-static void slice_convs(ptie_stepper *stepper, ptie_slicer *slicer) {
+/* Rows of a band: as many as keep what it touches in the second-level cache, a multiple of the
+   convolution's strips. */
+static int32_t band_rows(const ptie_layer *layer, int32_t height, int32_t width) {
+    const int64_t cache_floats = 192 * 1024, strip = PTIE_WINOGRAD_ROWS;
+    const int64_t row = (int64_t)(2 * layer->in_channels + layer->out_channels) * width;
+    const int64_t fits = cache_floats / row / strip * strip;
+    return (int32_t)(fits < strip ? strip : fits < height ? fits : height);
+}
+
+static void lay_out_layer(ptie_stepper *stepper, int32_t k) {
     const ptie_graph *graph = &stepper->model->graph;
-    for (int32_t k = 0; k < graph->conv_count; k++) {
-        const ptie_op *op = ptie_stepper_conv(stepper, k);
-        const int32_t in = op->in.channels, out = op->out.channels;
-        stepper->packed[k] = ptie_slice(slicer, ptie_conv3x3_packed(out, in), sizeof(float));
+    const ptie_layer *layer = &graph->layers[k];
+    const int32_t height = stepper->height >> layer->level, width = stepper->width >> layer->level;
+    const int32_t rows = stepper->rows[k] = band_rows(layer, height, width);
+    const bool join = layer->input == PTIE_INPUT_JOIN, pool = layer->input == PTIE_INPUT_POOL;
+    ptie_layout_add(&stepper->maps, k, layer->out_channels, height, width);
+    ptie_layout_add(&stepper->coarse, k, join ? graph->layers[k - 1].out_channels : 0, height / 2,
+                    width / 2);
+    ptie_layout_add(&stepper->input, k, layer->in_channels, rows + 2, width);
+    ptie_layout_add(&stepper->z_grad, k, layer->out_channels, rows + 2, width);
+    ptie_layout_add(&stepper->in_grad, k, join || pool ? layer->in_channels : 0, rows, width);
+    ptie_layout_add(&stepper->finer, k, pool ? layer->in_channels : 0, 2 * (rows + 2), 2 * width);
+}
+
+static void slice_layers(ptie_stepper *stepper, ptie_slicer *slicer) {
+    const ptie_graph *graph = &stepper->model->graph;
+    for (int32_t k = 0; k < graph->layer_count; k++) {
+        const int32_t in = graph->layers[k].in_channels, out = graph->layers[k].out_channels;
+        stepper->packed[k] = ptie_slice(slicer, ptie_winograd_packed(out, in), sizeof(float));
         stepper->packed_adjoint[k] =
-            ptie_slice(slicer, ptie_conv3x3_packed(in, out), sizeof(float));
+            ptie_slice(slicer, ptie_winograd_packed(in, out), sizeof(float));
         stepper->norms[k] = ptie_slice(slicer, (size_t)out, sizeof(ptie_norm));
     }
 }
 
 static void slice_sample(const ptie_stepper *stepper, ptie_slicer *slicer,
                          ptie_sample_state *sample) {
-    const ptie_graph *graph = &stepper->model->graph;
     const size_t pixels = (size_t)stepper->height * (size_t)stepper->width;
+    const size_t inputs = (size_t)stepper->model->params.in_channels;
     *sample = (ptie_sample_state){
-        .noisy = ptie_slice(slicer, pixels * (size_t)graph->input.channels, sizeof(float)),
+        .noisy = ptie_slice(slicer, pixels * inputs, sizeof(float)),
         .clean = ptie_slice(slicer, pixels, sizeof(float)),
-        .tensors = ptie_slice(slicer, stepper->tensors.floats, sizeof(float)),
-        .convs = ptie_slice(slicer, stepper->convs.floats, sizeof(float)),
-        .gradients = ptie_slice(slicer, stepper->tensors.floats, sizeof(float)),
-        .sums = ptie_slice(slicer, 2 * (size_t)most_channels(graph), sizeof(double)),
+        .z = ptie_slice(slicer, stepper->maps.floats, sizeof(float)),
+        .gradients = ptie_slice(slicer, stepper->maps.floats, sizeof(float)),
+        .coarse = ptie_slice(slicer, stepper->coarse.floats, sizeof(float)),
+        .sums = ptie_slice(slicer, 2 * stepper->most_channels, sizeof(double)),
         .weights = ptie_slice(slicer, stepper->total_count, sizeof(double)),
+    };
+}
+
+static size_t scratch_floats(const ptie_graph *graph) {
+    size_t most = 0;
+    for (int32_t k = 0; k < graph->layer_count; k++) {
+        const int32_t in = graph->layers[k].in_channels, out = graph->layers[k].out_channels;
+        const size_t forward = ptie_winograd_scratch(out, in),
+                     backward = ptie_winograd_scratch(in, out);
+        if (forward > most) most = forward;
+        if (backward > most) most = backward;
+    }
+    return most;
+}
+
+static void slice_workspace(const ptie_stepper *stepper, ptie_slicer *slicer,
+                            ptie_workspace *workspace) {
+    const size_t pixels = (size_t)stepper->height * (size_t)stepper->width;
+    *workspace = (ptie_workspace){
+        .input = ptie_slice(slicer, stepper->input.floats, sizeof(float)),
+        .z_grad = ptie_slice(slicer, stepper->z_grad.floats, sizeof(float)),
+        .in_grad = ptie_slice(slicer, stepper->in_grad.floats, sizeof(float)),
+        .finer = ptie_slice(slicer, stepper->finer.floats, sizeof(float)),
+        .scratch = ptie_slice(slicer, scratch_floats(&stepper->model->graph), sizeof(float)),
+        .estimate = ptie_slice(slicer, pixels, sizeof(float)),
+        .slope = ptie_slice(slicer, pixels, sizeof(float)),
+        .loss = ptie_slice(slicer, ptie_loss_scratch(stepper->width, stepper->height), 1),
     };
 }
 
 /* Hands out the block; with no block it only counts. */
 static size_t slice_block(ptie_stepper *stepper, void *block) {
     const ptie_graph *graph = &stepper->model->graph;
-    const size_t pixels = (size_t)stepper->height * (size_t)stepper->width;
     ptie_slicer slicer = {.base = block};
-    slice_convs(stepper, &slicer);
+    slice_layers(stepper, &slicer);
     for (int i = 0; i < 3; i++)
         stepper->state[i] = ptie_slice(&slicer, graph->trainable, sizeof(float));
     stepper->total = ptie_slice(&slicer, stepper->total_count, sizeof(double));
-    const int32_t threads = ptie_pool_threads(stepper->engine->pool);
-    for (int32_t i = 0; i < threads; i++) {
-        stepper->images[i] = ptie_slice(&slicer, 2 * pixels, sizeof(float));
-        stepper->loss_scratch[i] =
-            ptie_slice(&slicer, ptie_loss_scratch(stepper->width, stepper->height), 1);
-    }
+    for (int32_t i = 0; i < ptie_pool_threads(stepper->engine->pool); i++)
+        slice_workspace(stepper, &slicer, &stepper->workspaces[i]);
     for (int32_t n = 0; n < stepper->batch; n++)
         slice_sample(stepper, &slicer, &stepper->samples[n]);
     return slicer.used;
@@ -74,9 +119,7 @@ static ptie_status allocate(ptie_stepper *stepper) {
     const size_t threads = (size_t)ptie_pool_threads(stepper->engine->pool);
     const size_t batch = (size_t)stepper->batch;
     PTIE_TRY(ptie_alloc_status(&stepper->samples, batch, sizeof *stepper->samples, where));
-    PTIE_TRY(ptie_alloc_status(&stepper->images, threads, sizeof *stepper->images, where));
-    PTIE_TRY(
-        ptie_alloc_status(&stepper->loss_scratch, threads, sizeof *stepper->loss_scratch, where));
+    PTIE_TRY(ptie_alloc_status(&stepper->workspaces, threads, sizeof *stepper->workspaces, where));
     PTIE_TRY(ptie_alloc_status(&stepper->block, slice_block(stepper, NULL), 1, where));
     slice_block(stepper, stepper->block);
     return PTIE_OK;
@@ -103,10 +146,8 @@ ptie_status ptie_stepper_create(ptie_stepper **out, const ptie_engine *engine, p
     stepper->height = height;
     stepper->width = width;
     stepper->total_count = longest_weights(graph);
-    ptie_layout_tensors(&stepper->tensors, graph, height, width);
-    ptie_layout_convs(&stepper->convs, graph, height, width);
-    for (int32_t i = 0; i < graph->op_count; i++)
-        if (graph->ops[i].kind == PTIE_OP_CONV) stepper->conv_ops[graph->ops[i].conv] = i;
+    stepper->most_channels = most_channels(graph);
+    for (int32_t k = 0; k < graph->layer_count; k++) lay_out_layer(stepper, k);
     ptie_status status = allocate(stepper);
     if (status == PTIE_OK)
         *out = stepper;
@@ -118,8 +159,7 @@ ptie_status ptie_stepper_create(ptie_stepper **out, const ptie_engine *engine, p
 void ptie_stepper_free(ptie_stepper *stepper) {
     if (!stepper) return;
     ptie_free(stepper->block);
-    ptie_free(stepper->loss_scratch);
-    ptie_free(stepper->images);
+    ptie_free(stepper->workspaces);
     ptie_free(stepper->samples);
     ptie_free(stepper);
 }
@@ -140,12 +180,14 @@ float *ptie_stepper_state(ptie_stepper *stepper, int which, const char *name, si
 }
 
 static void pack_weights(ptie_stepper *stepper) {
-    for (int32_t k = 0; k < stepper->model->graph.conv_count; k++) {
-        const ptie_op *op = ptie_stepper_conv(stepper, k);
-        const float *weights = ptie_model_values(stepper->model, op, PTIE_WEIGHT);
-        ptie_conv3x3_pack(stepper->packed[k], weights, op->out.channels, op->in.channels, NULL);
-        ptie_conv3x3_pack_adjoint(stepper->packed_adjoint[k], weights, op->out.channels,
-                                  op->in.channels);
+    const ptie_graph *graph = &stepper->model->graph;
+    for (int32_t k = 0; k < graph->layer_count; k++) {
+        const ptie_layer *layer = &graph->layers[k];
+        const float *weights = ptie_model_values(stepper->model, layer->params, PTIE_WEIGHT);
+        ptie_winograd_pack(stepper->packed[k], weights, layer->out_channels, layer->in_channels,
+                           NULL);
+        ptie_winograd_pack_adjoint(stepper->packed_adjoint[k], weights, layer->out_channels,
+                                   layer->in_channels);
     }
 }
 
@@ -153,18 +195,20 @@ ptie_status ptie_stepper_gradients(ptie_stepper *stepper, int32_t count, uint64_
                                    uint64_t step, ptie_loss_parts *parts) {
     assert(count >= 1 && count <= stepper->batch);
     ptie_pool *pool = stepper->engine->pool;
-    const int32_t sections = stepper->model->graph.conv_count + 1;
+    const int32_t layers = stepper->model->graph.layer_count;
     stepper->count = count;
     stepper->seed = seed;
     stepper->step = step;
     stepper->parts = parts;
     pack_weights(stepper);
-    for (stepper->section = 0; stepper->section < sections; stepper->section++) {
-        PTIE_TRY(ptie_pool_run(pool, (size_t)count, ptie_forward_section, stepper));
+    for (stepper->section = 0; stepper->section < layers; stepper->section++) {
+        PTIE_TRY(ptie_pool_run(pool, (size_t)count, ptie_forward_layer, stepper));
         ptie_forward_join(stepper);
     }
-    for (stepper->section = sections; stepper->section-- > 0;) {
-        PTIE_TRY(ptie_pool_run(pool, (size_t)count, ptie_backward_section, stepper));
+    PTIE_TRY(ptie_pool_run(pool, (size_t)count, ptie_head, stepper));
+    ptie_head_join(stepper);
+    for (stepper->section = layers; stepper->section-- > 0;) {
+        PTIE_TRY(ptie_pool_run(pool, (size_t)count, ptie_backward_layer, stepper));
         ptie_backward_join(stepper);
     }
     return PTIE_OK;

@@ -1,76 +1,103 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What a stepper is inside, and the two directions through the network.
  *
- * BatchNorm needs the whole batch, everything else one sample.  So the walk is cut into sections:
- * section k is what lies between the normalisation of convolution k-1 and that of convolution k.
- * Within a section the samples run in parallel; between two sections their sums are combined in the
- * order of the samples.
+ * BatchNorm needs the whole batch, everything else one sample.  So the walk is cut into sections,
+ * one per layer and one for the head and the loss: within a section the samples run in parallel,
+ * between two sections their sums are combined in the order of the samples.
+ *
+ * Per sample only two maps of each layer are kept: z, the convolution before its BatchNorm, and the
+ * gradient behind its ReLU.  What a layer reads is made again from z, band by band of rows, in
+ * memory that stays in the cache: reading a map costs more than normalising it again.
  */
 #ifndef PTIE_NN_STEPPER_H
 #define PTIE_NN_STEPPER_H
 
 #include "nn/model.h"
 
-/* Rows handled together, so that what one kernel writes is still in the cache when the next one
-   reads it; also the block of sums in the gradient of the weights. */
-#define PTIE_BAND_ROWS 16
-
 typedef struct ptie_sample_state {
     float *noisy, *clean; /* contiguous (I, H, W) and (H, W): the caller's */
-    float *tensors,
-        *convs;       /* blocks of the layouts: outputs, and convolutions before their BatchNorm */
-    float *gradients; /* block of the tensors' layout */
-    double *sums;     /* (C, 2) of the convolution that ends the section */
-    double *weights;  /* gradient of the weights of the section's convolution or head */
+    float *z, *gradients; /* blocks of the layout `maps` */
+    float *coarse;        /* block of the layout `coarse` */
+    double *sums;         /* (C, 2) of the layer that ends the section */
+    double *weights;      /* gradient of the weights of the section's layer or head */
 } ptie_sample_state;
+
+/* Memory of one worker. */
+typedef struct ptie_workspace {
+    float *input, *z_grad, *in_grad, *finer; /* blocks of the layouts of bands */
+    float *scratch;                          /* of the convolutions */
+    float *estimate, *slope;                 /* (H, W): the output, the gradient of the loss */
+    void *loss;
+} ptie_workspace;
 
 struct ptie_stepper {
     const ptie_engine *engine;
     ptie_model *model;
     ptie_loss_weights loss;
     int32_t batch, height, width;
-    ptie_layout tensors, convs;
-    int32_t conv_ops[PTIE_MAX_CONVS];      /* index of each convolution's operation */
-    float *packed[PTIE_MAX_CONVS];         /* weights in the kernels' order, forward ... */
-    float *packed_adjoint[PTIE_MAX_CONVS]; /* ... and backward */
-    ptie_norm *norms[PTIE_MAX_CONVS];
+    ptie_layout maps;   /* output channels */
+    ptie_layout coarse; /* what a join reads of the layer before it, before it is upsampled */
+    /* Bands: what a layer reads and the gradient of its z, with a row more above and below; the
+       gradient of what it reads; what a pool reads. */
+    ptie_layout input, z_grad, in_grad, finer;
+    int32_t rows[PTIE_MAX_LAYERS];          /* of a band, without those two */
+    float *packed[PTIE_MAX_LAYERS];         /* weights in the kernels' order, forward ... */
+    float *packed_adjoint[PTIE_MAX_LAYERS]; /* ... and backward */
+    ptie_norm *norms[PTIE_MAX_LAYERS];
     ptie_sample_state *samples; /* batch */
+    ptie_workspace *workspaces; /* threads */
     float *state[3];            /* gradient, first and second moment, as the model's values */
     double *total;              /* where samples' sums are combined */
-    size_t total_count;
-    float **images;      /* per worker: estimate, gradient of the loss */
-    void **loss_scratch; /* per worker */
+    size_t total_count, most_channels;
     void *block;
 
-    int32_t
-        count; /* the step under way: samples, dropout's stream, where the losses go, the section */
+    /* The step under way: samples, dropout's stream, where the losses go, the section. */
+    int32_t count;
     uint64_t seed, step;
     ptie_loss_parts *parts;
     int32_t section;
 };
 
-static inline const ptie_op *ptie_stepper_conv(const ptie_stepper *stepper, int32_t conv) {
-    return &stepper->model->graph.ops[stepper->conv_ops[conv]];
-}
+/* A band of a layer: the rows first .. first + rows - 1 of its level. */
+typedef struct ptie_band {
+    int32_t layer, first, rows;
+    ptie_sample_state *sample;
+    const ptie_workspace *workspace;
+} ptie_band;
 
-/* Operations first .. last - 1 are those of a section that belong to no convolution. */
-static inline int32_t ptie_section_first(const ptie_stepper *stepper, int32_t section) {
-    return section == 0 ? 0 : stepper->conv_ops[section - 1] + 1;
-}
-static inline int32_t ptie_section_last(const ptie_stepper *stepper, int32_t section) {
-    const ptie_graph *graph = &stepper->model->graph;
-    return section == graph->conv_count ? graph->op_count : stepper->conv_ops[section];
-}
+/* The first band, and the one after; `rows` is 0 behind the last. */
+ptie_band ptie_band_first(const ptie_stepper *stepper, int32_t layer, size_t sample,
+                          int32_t worker);
+void ptie_band_next(const ptie_stepper *stepper, ptie_band *band);
 
-/* One section of one sample (pool tasks; context is the stepper), and what joins the samples after
- * it. */
-ptie_status ptie_forward_section(void *context, size_t sample, int32_t worker);
-void ptie_forward_join(ptie_stepper *stepper);
-ptie_status ptie_backward_section(void *context, size_t sample, int32_t worker);
-void ptie_backward_join(ptie_stepper *stepper);
+/* Views of a layer's whole z or gradient, and of some rows. */
+ptie_map ptie_z_rows(const ptie_stepper *stepper, const ptie_sample_state *sample, int32_t layer,
+                     int32_t first, int32_t rows);
+ptie_map ptie_gradient_rows(const ptie_stepper *stepper, const ptie_sample_state *sample,
+                            int32_t layer, int32_t first, int32_t rows);
 
-/* Multiplies a map by the step's dropout mask of this sample (N7); the same forward and backward.
- */
+/* What the band's layer reads; the rows above and below it are there too (0 beyond the image). */
+ptie_map ptie_band_input(const ptie_stepper *stepper, const ptie_band *band);
+/* What a pool read of the layer before, rows 2 first .. of it; after ptie_band_input. */
+ptie_map ptie_band_finer(const ptie_stepper *stepper, const ptie_band *band);
+
+/* Rows of a band as `padded` holds them, one above and one below, clipped to the image. */
+typedef struct ptie_clip {
+    ptie_map map;  /* the rows inside the image */
+    int32_t first; /* of them */
+} ptie_clip;
+/* Zeroes the rows outside. */
+ptie_clip ptie_clip_band(const ptie_map *padded, int32_t first, int32_t height);
+
+/* Multiplies a map by the step's mask of this sample (N7). */
 void ptie_dropout(const ptie_stepper *stepper, const ptie_map *map, size_t sample);
+
+/* Sections of one sample (pool tasks; context is the stepper), and what joins the samples. */
+ptie_status ptie_forward_layer(void *context, size_t sample, int32_t worker);
+void ptie_forward_join(ptie_stepper *stepper);
+ptie_status ptie_head(void *context, size_t sample, int32_t worker); /* forward, loss, backward */
+void ptie_head_join(ptie_stepper *stepper);
+ptie_status ptie_backward_layer(void *context, size_t sample, int32_t worker);
+void ptie_backward_join(ptie_stepper *stepper);
 
 #endif

@@ -259,7 +259,7 @@ static void test_conv1x1_weights(twin *t) {
     t->scalar->conv1x1_weights(sums + count, sums + count + weights, &g.map, &in.map);
     t->scalar->conv1x1_weights(sums + 2 * count, sums + 2 * count + weights, &g_abs.map,
                                &in_abs.map);
-    compare_sums(t, sums, sums + count, sums + 2 * count, gamma_n(lane_terms(t, 1)), count,
+    compare_sums(t, sums, sums + count, sums + 2 * count, gamma_n(lane_terms(t, t->height)), count,
                  "conv1x1_weights");
     block_free(&in), block_free(&in_abs), block_free(&g), block_free(&g_abs);
     free(sums);
@@ -274,7 +274,7 @@ static void test_moments(twin *t) {
     t->kernels->moments(sums, &z.map);
     t->scalar->moments(sums + count, &z.map);
     t->scalar->moments(sums + 2 * count, &z_abs.map);
-    compare_sums(t, sums, sums + count, sums + 2 * count, gamma_n(lane_terms(t, 1)), count,
+    compare_sums(t, sums, sums + count, sums + 2 * count, gamma_n(lane_terms(t, t->height)), count,
                  "moments");
     block_free(&z), block_free(&z_abs);
     free(sums);
@@ -326,7 +326,7 @@ static void test_normalise_sums(twin *t) {
     block g = block_make(t->out_channels, t->height, t->width, &t->random);
     ptie_norm *norms = make_norms(t);
     double *sums = calloc(3 * count, sizeof *sums), *bound = sums + 2 * count;
-    const double factor = gamma_n(lane_terms(t, 1) + 3);
+    const double factor = gamma_n(lane_terms(t, t->height) + 3);
     for (int32_t c = 0; c < t->out_channels; c++)
         for (int32_t y = 0; y < t->height; y++)
             for (int32_t x = 0; x < t->width; x++) {
@@ -346,6 +346,7 @@ static void test_normalise_sums(twin *t) {
 
 static void test_normalise_backward(twin *t) {
     block z = block_make(t->out_channels, t->height, t->width, &t->random);
+    block g = block_make(t->out_channels, t->height, t->width, &t->random);
     block found = block_make(t->out_channels, t->height, t->width, &t->random),
           expected = block_copy(&found);
     ptie_norm *norms = make_norms(t);
@@ -356,16 +357,17 @@ static void test_normalise_backward(twin *t) {
             for (int32_t x = 0; x < t->width; x++) {
                 const ptie_norm *n = &norms[c];
                 double value = (double)*block_pixel(&z, c, y, x),
-                       g = (double)*block_pixel(&found, c, y, x);
+                       grad = (double)*block_pixel(&g, c, y, x);
                 double xhat = (value - (double)n->mean) * (double)n->inverse_std;
-                double size = fabs(g) + fabs((double)n->mean_g) + fabs(xhat * (double)n->mean_gx);
+                double size =
+                    fabs(grad) + fabs((double)n->mean_g) + fabs(xhat * (double)n->mean_gx);
                 bound[pixel++] = fabs((double)n->scale) *
-                                 (gamma_n(6) * size + (undecided(n, value) ? fabs(g) : 0));
+                                 (gamma_n(6) * size + (undecided(n, value) ? fabs(grad) : 0));
             }
-    t->kernels->normalise_backward(&found.map, &z.map, norms);
-    t->scalar->normalise_backward(&expected.map, &z.map, norms);
+    t->kernels->normalise_backward(&found.map, &g.map, &z.map, norms);
+    t->scalar->normalise_backward(&expected.map, &g.map, &z.map, norms);
     compare(t, &found, &expected, NULL, 0, bound, "normalise_backward");
-    block_free(&z), block_free(&found), block_free(&expected);
+    block_free(&z), block_free(&g), block_free(&found), block_free(&expected);
     free(norms), free(bound);
 }
 
@@ -395,28 +397,30 @@ static void test_maxpool_backward(twin *t) {
 }
 
 static void test_upsample(twin *t) {
+    const int32_t first = t->width % (2 * t->height); /* rows first .. of the finer image */
     block in = block_make(t->out_channels, t->height, t->width, &t->random),
           in_abs = block_absolute(&in);
-    block found = block_make(t->out_channels, 2 * t->height, 2 * t->width, &t->random);
+    block found = block_make(t->out_channels, 2 * t->height - first, 2 * t->width, &t->random);
     block expected = block_copy(&found), magnitude = block_copy(&found);
-    t->kernels->upsample(&found.map, &in.map);
-    t->scalar->upsample(&expected.map, &in.map);
-    t->scalar->upsample(&magnitude.map, &in_abs.map);
+    t->kernels->upsample(&found.map, &in.map, first);
+    t->scalar->upsample(&expected.map, &in.map, first);
+    t->scalar->upsample(&magnitude.map, &in_abs.map, first);
     compare(t, &found, &expected, &magnitude, 2 * gamma_n(4), NULL, "upsample");
     block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected),
         block_free(&magnitude);
 }
 
 static void test_upsample_backward(twin *t) {
-    block g = block_make(t->out_channels, 2 * t->height, 2 * t->width, &t->random);
+    const int32_t first = t->width % (2 * t->height), rows = 2 * t->height - first;
+    block g = block_make(t->out_channels, 1 + t->width % rows, 2 * t->width, &t->random);
     block_clear_halo(&g); /* the kernel relies on it */
     block g_abs = block_absolute(&g);
     block found = block_make(t->out_channels, t->height, t->width, &t->random);
-    block expected = block_copy(&found), magnitude = block_copy(&found);
-    t->kernels->upsample_backward(&found.map, &g.map);
-    t->scalar->upsample_backward(&expected.map, &g.map);
-    t->scalar->upsample_backward(&magnitude.map, &g_abs.map);
-    compare(t, &found, &expected, &magnitude, 2 * gamma_n(17), NULL, "upsample_backward");
+    block expected = block_copy(&found), magnitude = block_absolute(&found);
+    t->kernels->upsample_backward(&found.map, &g.map, first);
+    t->scalar->upsample_backward(&expected.map, &g.map, first);
+    t->scalar->upsample_backward(&magnitude.map, &g_abs.map, first);
+    compare(t, &found, &expected, &magnitude, 2 * gamma_n(18), NULL, "upsample_backward");
     block_free(&g), block_free(&g_abs), block_free(&found), block_free(&expected),
         block_free(&magnitude);
 }

@@ -39,16 +39,16 @@ void ptie_normalise_sums_scalar(double *sums, const ptie_map *grad, const ptie_m
         }
 }
 
-void ptie_normalise_backward_scalar(const ptie_map *grad, const ptie_map *z,
+void ptie_normalise_backward_scalar(const ptie_map *z_grad, const ptie_map *grad, const ptie_map *z,
                                     const ptie_norm *norms) {
     for (int32_t c = 0; c < z->channels; c++)
         for (int32_t y = 0; y < z->height; y++) {
-            const float *from = row_of(z, c, y);
-            float *g = row_of(grad, c, y);
+            const float *from = row_of(z, c, y), *g = row_of(grad, c, y);
+            float *to = row_of(z_grad, c, y);
             for (int32_t x = 0; x < z->width; x++) {
                 float open = norms[c].scale * from[x] + norms[c].shift > 0 ? g[x] : 0;
                 float xhat = (from[x] - norms[c].mean) * norms[c].inverse_std;
-                g[x] = norms[c].scale * (open - norms[c].mean_g - xhat * norms[c].mean_gx);
+                to[x] = norms[c].scale * (open - norms[c].mean_g - xhat * norms[c].mean_gx);
             }
         }
 }

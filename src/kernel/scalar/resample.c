@@ -40,12 +40,12 @@ static void neighbours(int32_t to, int32_t size, int32_t *near, int32_t *far) {
     if (*far > size - 1) *far = size - 1;
 }
 
-void ptie_upsample_scalar(const ptie_map *out, const ptie_map *in) {
+void ptie_upsample_scalar(const ptie_map *out, const ptie_map *in, int32_t first) {
     for (int32_t c = 0; c < out->channels; c++)
         for (int32_t y = 0; y < out->height; y++)
             for (int32_t x = 0; x < out->width; x++) {
                 int32_t y0, y1, x0, x1;
-                neighbours(y, in->height, &y0, &y1);
+                neighbours(first + y, in->height, &y0, &y1);
                 neighbours(x, in->width, &x0, &x1);
                 const float *a = row_of(in, c, y0), *b = row_of(in, c, y1);
                 row_of(out, c, y)[x] = 0.75f * (0.75f * a[x0] + 0.25f * b[x0]) +
@@ -53,14 +53,13 @@ void ptie_upsample_scalar(const ptie_map *out, const ptie_map *in) {
             }
 }
 
-void ptie_upsample_backward_scalar(const ptie_map *in_grad, const ptie_map *out_grad) {
-    for (int32_t c = 0; c < in_grad->channels; c++) {
-        for (int32_t y = 0; y < in_grad->height; y++)
-            for (int32_t x = 0; x < in_grad->width; x++) row_of(in_grad, c, y)[x] = 0;
+void ptie_upsample_backward_scalar(const ptie_map *in_grad, const ptie_map *out_grad,
+                                   int32_t first) {
+    for (int32_t c = 0; c < out_grad->channels; c++)
         for (int32_t y = 0; y < out_grad->height; y++)
             for (int32_t x = 0; x < out_grad->width; x++) {
                 int32_t y0, y1, x0, x1;
-                neighbours(y, in_grad->height, &y0, &y1);
+                neighbours(first + y, in_grad->height, &y0, &y1);
                 neighbours(x, in_grad->width, &x0, &x1);
                 float g = row_of(out_grad, c, y)[x];
                 row_of(in_grad, c, y0)[x0] += 0.5625f * g;
@@ -68,5 +67,4 @@ void ptie_upsample_backward_scalar(const ptie_map *in_grad, const ptie_map *out_
                 row_of(in_grad, c, y1)[x0] += 0.1875f * g;
                 row_of(in_grad, c, y1)[x1] += 0.0625f * g;
             }
-    }
 }

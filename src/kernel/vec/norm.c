@@ -1,16 +1,22 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* BatchNorm with ReLU.  Sums run in single precision over one row, in double from row to row. */
+/* BatchNorm with ReLU.  Sums run in single precision over a few rows, in double beyond.
+ */
 #include "kernel/vec/vec.h"
+
+/* Rows summed in single precision before they go on in double. */
+enum { SUM_ROWS = 4 };
 
 void VEC(moments)(double *sums, const ptie_map *z) {
     for (int32_t c = 0; c < z->channels; c++)
-        for (int32_t y = 0; y < z->height; y++) {
-            const float *row = row_of(z, c, y);
+        for (int32_t y = 0; y < z->height; y += SUM_ROWS) {
             vf sum = {0}, squares = {0};
-            for (int32_t x = 0; x < z->width; x += VEC_WIDTH) {
-                const vf value = vf_first(vf_load(row + x), z->width - x);
-                sum += value;
-                squares += value * value;
+            for (int32_t r = y; r < smaller(y + SUM_ROWS, z->height); r++) {
+                const float *row = row_of(z, c, r);
+                for (int32_t x = 0; x < z->width; x += VEC_WIDTH) {
+                    const vf value = vf_first(vf_load(row + x), z->width - x);
+                    sum += value;
+                    squares += value * value;
+                }
             }
             sums[2 * c] += vf_sum(sum);
             sums[2 * c + 1] += vf_sum(squares);
@@ -39,15 +45,17 @@ void VEC(normalise_sums)(double *sums, const ptie_map *grad, const ptie_map *z,
                          const ptie_norm *norms) {
     for (int32_t c = 0; c < z->channels; c++) {
         const vf mean = vf_splat(norms[c].mean), inverse_std = vf_splat(norms[c].inverse_std);
-        for (int32_t y = 0; y < z->height; y++) {
-            const float *from = row_of(z, c, y), *g = row_of(grad, c, y);
+        for (int32_t y = 0; y < z->height; y += SUM_ROWS) {
             vf sum = {0}, product = {0};
-            for (int32_t x = 0; x < z->width; x += VEC_WIDTH) {
-                const vf value = vf_load(from + x);
-                const vf open =
-                    vf_first(open_gradient(vf_load(g + x), value, &norms[c]), z->width - x);
-                sum += open;
-                product += open * ((value - mean) * inverse_std);
+            for (int32_t r = y; r < smaller(y + SUM_ROWS, z->height); r++) {
+                const float *from = row_of(z, c, r), *g = row_of(grad, c, r);
+                for (int32_t x = 0; x < z->width; x += VEC_WIDTH) {
+                    const vf value = vf_load(from + x);
+                    const vf open =
+                        vf_first(open_gradient(vf_load(g + x), value, &norms[c]), z->width - x);
+                    sum += open;
+                    product += open * ((value - mean) * inverse_std);
+                }
             }
             sums[2 * c] += vf_sum(sum);
             sums[2 * c + 1] += vf_sum(product);
@@ -55,18 +63,19 @@ void VEC(normalise_sums)(double *sums, const ptie_map *grad, const ptie_map *z,
     }
 }
 
-void VEC(normalise_backward)(const ptie_map *grad, const ptie_map *z, const ptie_norm *norms) {
+void VEC(normalise_backward)(const ptie_map *z_grad, const ptie_map *grad, const ptie_map *z,
+                             const ptie_norm *norms) {
     for (int32_t c = 0; c < z->channels; c++) {
         const vf mean = vf_splat(norms[c].mean), inverse_std = vf_splat(norms[c].inverse_std);
         const vf mean_g = vf_splat(norms[c].mean_g), mean_gx = vf_splat(norms[c].mean_gx);
         const vf scale = vf_splat(norms[c].scale);
         for (int32_t y = 0; y < z->height; y++) {
-            const float *from = row_of(z, c, y);
-            float *g = row_of(grad, c, y);
+            const float *from = row_of(z, c, y), *g = row_of(grad, c, y);
+            float *to = row_of(z_grad, c, y);
             for (int32_t x = 0; x < z->width; x += VEC_WIDTH) {
                 const vf value = vf_load(from + x), xhat = (value - mean) * inverse_std;
                 const vf open = open_gradient(vf_load(g + x), value, &norms[c]);
-                vf_store_first(g + x, scale * (open - mean_g - xhat * mean_gx), z->width - x);
+                vf_store_first(to + x, scale * (open - mean_g - xhat * mean_gx), z->width - x);
             }
         }
     }

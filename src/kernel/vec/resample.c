@@ -69,14 +69,13 @@ static void upsample_row(float *out, const float *near, const float *far, int32_
     out[2 * width - 1] = 0.75f * near[width - 1] + 0.25f * far[width - 1];
 }
 
-void VEC(upsample)(const ptie_map *out, const ptie_map *in) {
+void VEC(upsample)(const ptie_map *out, const ptie_map *in, int32_t first) {
     const int32_t last = in->height - 1;
-    for (int32_t c = 0; c < in->channels; c++)
-        for (int32_t y = 0; y <= last; y++) {
-            const float *above = row_of(in, c, y > 0 ? y - 1 : 0), *here = row_of(in, c, y);
-            const float *below = row_of(in, c, y < last ? y + 1 : last);
-            upsample_row(row_of(out, c, 2 * y), here, above, in->width);
-            upsample_row(row_of(out, c, 2 * y + 1), here, below, in->width);
+    for (int32_t c = 0; c < out->channels; c++)
+        for (int32_t y = 0; y < out->height; y++) {
+            const int32_t near = (first + y) / 2, next = (first + y) % 2 ? near + 1 : near - 1;
+            const int32_t far = next < 0 ? 0 : smaller(next, last);
+            upsample_row(row_of(out, c, y), row_of(in, c, near), row_of(in, c, far), in->width);
         }
 }
 
@@ -88,32 +87,40 @@ INLINE vf blend4(const float *const rows[4], const float weights[4], int32_t x) 
             vf_splat(weights[3]) * vf_load(rows[3] + x));
 }
 
-void VEC(upsample_backward)(const ptie_map *in_grad, const ptie_map *out_grad) {
-    const int32_t last = in_grad->height - 1, width = in_grad->width;
-    for (int32_t c = 0; c < in_grad->channels; c++)
-        for (int32_t y = 0; y <= last; y++) {
-            /* At the edges a pixel is its own neighbour; the row outside does not exist. */
-            const float weights[4] = {y > 0 ? 0.25f : 0, y > 0 ? 0.75f : 1, y < last ? 0.75f : 1,
-                                      y < last ? 0.25f : 0};
-            const float *const rows[4] = {row_of(out_grad, c, y > 0 ? 2 * y - 1 : 0),
-                                          row_of(out_grad, c, 2 * y),
-                                          row_of(out_grad, c, 2 * y + 1),
-                                          row_of(out_grad, c, y < last ? 2 * y + 2 : 2 * y + 1)};
-            float *to = row_of(in_grad, c, y);
-            for (int32_t x = 0; x < width; x += VEC_WIDTH) {
-                const vf a = blend4(rows, weights, 2 * x),
-                         b = blend4(rows, weights, 2 * x + VEC_WIDTH);
-                const vf before = vf_even(blend4(rows, weights, 2 * x - 1),
-                                          blend4(rows, weights, 2 * x - 1 + VEC_WIDTH));
-                const vf after = vf_even(blend4(rows, weights, 2 * x + 2),
-                                         blend4(rows, weights, 2 * x + 2 + VEC_WIDTH));
-                const vf sum = vf_splat(0.75f) * (vf_even(a, b) + vf_odd(a, b)) +
-                               vf_splat(0.25f) * (before + after);
-                vf_store_first(to + x, sum, width - x);
+/* Adds to a row of the coarser image what four rows of the finer one give it. */
+static void spread_back(float *to, const float *const rows[4], const float weights[4],
+                        int32_t width) {
+    for (int32_t x = 0; x < width; x += VEC_WIDTH) {
+        const vf a = blend4(rows, weights, 2 * x), b = blend4(rows, weights, 2 * x + VEC_WIDTH);
+        const vf before =
+            vf_even(blend4(rows, weights, 2 * x - 1), blend4(rows, weights, 2 * x - 1 + VEC_WIDTH));
+        const vf after =
+            vf_even(blend4(rows, weights, 2 * x + 2), blend4(rows, weights, 2 * x + 2 + VEC_WIDTH));
+        const vf sum =
+            vf_splat(0.75f) * (vf_even(a, b) + vf_odd(a, b)) + vf_splat(0.25f) * (before + after);
+        vf_store_first(to + x, vf_load(to + x) + sum, width - x);
+    }
+    for (int k = 0; k < 4; k++) { /* at its ends the row continues itself */
+        to[0] += 0.25f * weights[k] * rows[k][0];
+        to[width - 1] += 0.25f * weights[k] * rows[k][2 * width - 1];
+    }
+}
+
+void VEC(upsample_backward)(const ptie_map *in_grad, const ptie_map *out_grad, int32_t first) {
+    const int32_t last = in_grad->height - 1, end = first + out_grad->height;
+    const int32_t from = first > 0 ? (first - 1) / 2 : 0, to = smaller(last, end / 2);
+    for (int32_t c = 0; c < out_grad->channels; c++)
+        for (int32_t y = from; y <= to; y++) {
+            /* The image's first and last row continue themselves. */
+            const float full[4] = {0.25f, y > 0 ? 0.75f : 1, y < last ? 0.75f : 1, 0.25f};
+            const float *rows[4];
+            float weights[4];
+            for (int32_t k = 0; k < 4; k++) {
+                const int32_t row = 2 * y - 1 + k;
+                const bool given = row >= first && row < end;
+                weights[k] = given ? full[k] : 0;
+                rows[k] = row_of(out_grad, c, given ? row - first : 0);
             }
-            for (int k = 0; k < 4; k++) {
-                to[0] += 0.25f * weights[k] * rows[k][0];
-                to[width - 1] += 0.25f * weights[k] * rows[k][2 * width - 1];
-            }
+            spread_back(row_of(in_grad, c, y), rows, weights, in_grad->width);
         }
 }
