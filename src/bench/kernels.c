@@ -20,10 +20,12 @@ typedef struct shape {
 /* What the kernels work on: `in` (I, S, S), `out` (O, S, S), and at half the size of `out`. */
 typedef struct maps {
     ptie_map in, out, half, half_grad;
-    float *weights, *packed, *adjoint, *bias; /* (O, I, 3, 3), packed twice; (O) */
-    ptie_norm *norms;                         /* (O) */
-    double *sums;                             /* as many as a gradient of the weights, and biases */
-    float *image, *other, *row;               /* contiguous (S, S) */
+    float *weights, *bias;                  /* (O, I, 3, 3); (O) */
+    float *packed, *adjoint;                /* weights in the order of conv3x3 ... */
+    float *parts, *parts_adjoint, *scratch; /* ... and of winograd3x3 */
+    ptie_norm *norms;                       /* (O) */
+    double *sums;                           /* as many as a gradient of the weights, and biases */
+    float *image, *other, *row;             /* contiguous (S, S) */
 } maps;
 
 typedef struct kernel_case {
@@ -58,8 +60,14 @@ static void conv3x3(const ptie_kernels *k, const maps *m) {
 static void conv3x3_input(const ptie_kernels *k, const maps *m) {
     k->conv3x3(&m->in, &m->out, m->adjoint, NULL, false);
 }
+static void winograd3x3(const ptie_kernels *k, const maps *m) {
+    k->winograd3x3(&m->out, &m->in, m->parts, m->bias, true, m->scratch);
+}
+static void winograd3x3_input(const ptie_kernels *k, const maps *m) {
+    k->winograd3x3(&m->in, &m->out, m->parts_adjoint, NULL, false, m->scratch);
+}
 static void conv3x3_weights(const ptie_kernels *k, const maps *m) {
-    k->conv3x3_weights(m->sums, &m->out, &m->in);
+    k->conv3x3_weights(m->sums, &m->out, &m->in, m->scratch);
 }
 static void conv1x1(const ptie_kernels *k, const maps *m) {
     k->conv1x1(&m->out, &m->in, m->weights, m->bias);
@@ -77,7 +85,7 @@ static void normalise_sums(const ptie_kernels *k, const maps *m) {
     k->normalise_sums(m->sums, &m->out, &m->in, m->norms);
 }
 static void normalise_backward(const ptie_kernels *k, const maps *m) {
-    k->normalise_backward(&m->out, &m->in, m->norms);
+    k->normalise_backward(&m->out, &m->out, &m->in, m->norms);
 }
 static void maxpool(const ptie_kernels *k, const maps *m) {
     k->maxpool(&m->half, &m->in);
@@ -86,10 +94,10 @@ static void maxpool_backward(const ptie_kernels *k, const maps *m) {
     k->maxpool_backward(&m->out, &m->half_grad, &m->in, &m->half);
 }
 static void upsample(const ptie_kernels *k, const maps *m) {
-    k->upsample(&m->out, &m->half);
+    k->upsample(&m->out, &m->half, 0);
 }
 static void upsample_backward(const ptie_kernels *k, const maps *m) {
-    k->upsample_backward(&m->half_grad, &m->out);
+    k->upsample_backward(&m->half_grad, &m->out, 0);
 }
 static void sigmoid(const ptie_kernels *k, const maps *m) {
     k->sigmoid(&m->out, &m->in);
@@ -105,6 +113,10 @@ static const kernel_case kernel_cases[] = {
     {"conv3x3", "3x3", SHAPES(convolutions), .taps = 9, .call = conv3x3},
     {"conv3x3", "3x3 input gradient", convolutions + 1, COUNT(convolutions) - 1, .taps = 9,
      .call = conv3x3_input}, /* nobody asks for the gradient of the image */
+    /* Its operations are counted as those of the direct sums. */
+    {"winograd3x3", "3x3 Winograd", SHAPES(convolutions), .taps = 9, .call = winograd3x3},
+    {"winograd3x3", "3x3 Winograd input gradient", convolutions + 1, COUNT(convolutions) - 1,
+     .taps = 9, .call = winograd3x3_input},
     {"conv3x3_weights", "3x3 weight gradient", SHAPES(convolutions), .taps = 9,
      .call = conv3x3_weights},
     {"conv1x1", "1x1", SHAPES(head), .in = 1, .out = 1, .call = conv1x1},
@@ -120,7 +132,7 @@ static const kernel_case kernel_cases[] = {
     {"maxpool_backward", "max-pool: backward", SHAPES(activation), .in = 1, .out = 2, .half = 2,
      .call = maxpool_backward},
     {"upsample", "upsample", SHAPES(activation), .out = 1, .half = 1, .call = upsample},
-    {"upsample_backward", "upsample: backward", SHAPES(activation), .out = 1, .half = 1,
+    {"upsample_backward", "upsample: backward", SHAPES(activation), .out = 1, .half = 2,
      .call = upsample_backward},
     {"sigmoid", "sigmoid", SHAPES(image), .in = 1, .out = 1, .call = sigmoid},
     {"window", "SSIM window", SHAPES(image), .in = 1, .out = 1, .call = window},
@@ -142,6 +154,7 @@ static ptie_map slice_map(ptie_slicer *slicer, int32_t channels, int32_t side) {
 /* Hands out a zeroed block; with no block it only counts. */
 static size_t slice_maps(maps *m, shape s, void *block) {
     ptie_slicer slicer = {.base = block};
+    const int32_t most = s.in > s.out ? s.in : s.out;
     const size_t in = (size_t)s.in, out = (size_t)s.out, pixels = (size_t)s.side * (size_t)s.side;
     *m = (maps){
         .in = slice_map(&slicer, s.in, s.side),
@@ -151,6 +164,9 @@ static size_t slice_maps(maps *m, shape s, void *block) {
         .weights = ptie_slice(&slicer, in * out * 9, sizeof(float)),
         .packed = ptie_slice(&slicer, ptie_conv3x3_packed(s.out, s.in), sizeof(float)),
         .adjoint = ptie_slice(&slicer, ptie_conv3x3_packed(s.in, s.out), sizeof(float)),
+        .parts = ptie_slice(&slicer, ptie_winograd_packed(s.out, s.in), sizeof(float)),
+        .parts_adjoint = ptie_slice(&slicer, ptie_winograd_packed(s.in, s.out), sizeof(float)),
+        .scratch = ptie_slice(&slicer, ptie_winograd_scratch(most, most), sizeof(float)),
         .bias = ptie_slice(&slicer, out, sizeof(float)),
         .norms = ptie_slice(&slicer, out, sizeof(ptie_norm)),
         .sums = ptie_slice(&slicer, in * out * 9 + out, sizeof(double)),
@@ -186,6 +202,8 @@ static void fill_maps(maps *m, shape s) {
     for (int32_t c = 0; c < s.out; c++) m->norms[c] = (ptie_norm){.scale = 1, .inverse_std = 1};
     ptie_conv3x3_pack(m->packed, m->weights, s.out, s.in, NULL);
     ptie_conv3x3_pack_adjoint(m->adjoint, m->weights, s.out, s.in);
+    ptie_winograd_pack(m->parts, m->weights, s.out, s.in, NULL);
+    ptie_winograd_pack_adjoint(m->parts_adjoint, m->weights, s.out, s.in);
 }
 
 typedef struct running {

@@ -9,18 +9,17 @@ ptie_status ptie_bench_model(ptie_model **out) {
     return ptie_nn_create(out, &params);
 }
 
-static double op_flops(const ptie_graph *graph, const ptie_op *op, int32_t side) {
-    const int32_t taps = op->kind == PTIE_OP_CONV ? 9 : op->kind == PTIE_OP_HEAD ? 1 : 0;
-    const double here = side >> graph->tensors[op->out.tensor].level;
-    return 2.0 * taps * op->in.channels * op->out.channels * here * here;
+static double layer_flops(const ptie_layer *layer, int32_t side) {
+    const double here = side >> layer->level;
+    return 2.0 * 9 * layer->in_channels * layer->out_channels * here * here;
 }
 
 double ptie_bench_forward_flops(const ptie_graph *graph, int32_t side) {
-    double flops = 0;
-    for (int32_t i = 0; i < graph->op_count; i++) flops += op_flops(graph, &graph->ops[i], side);
+    double flops = 2.0 * (double)graph->params[graph->head].count * side * side;
+    for (int32_t k = 0; k < graph->layer_count; k++) flops += layer_flops(&graph->layers[k], side);
     return flops;
 }
 
 double ptie_bench_training_flops(const ptie_graph *graph, int32_t side) {
-    return 3 * ptie_bench_forward_flops(graph, side) - op_flops(graph, &graph->ops[0], side);
+    return 3 * ptie_bench_forward_flops(graph, side) - layer_flops(&graph->layers[0], side);
 }
