@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "flow/diffusion.h"
+#include "flow/exhaust.h"
 #include "flow/gas.h"
 
 static const double degree = 3.14159265358979323846 / 180;
@@ -82,6 +84,72 @@ static void phases_have_the_known_size_and_sign(void **state) {
     assert_near(ptie_electron_phase(532e-9, 1e23 * 1e-3), -0.15, 0.0005);
 }
 
+/* The sum of exp(-t^2 / 2 s^2) over a grid of spacing s / 4 is its integral, to better than 1e-15. */
+static double gaussian_sum(double s) {
+    double sum = 0;
+    for (int i = -40; i <= 40; i++) sum += exp(-0.5 * (i / 4.0) * (i / 4.0)) * s / 4;
+    return sum;
+}
+
+/* What flows through every cross-section of a plume, and what a puff holds, stays what it was: seen
+   along the third direction, the integral of the path over the others. */
+static void diffusion_keeps_the_gas(void **state) {
+    (void)state;
+    const ptie_diffusion d = {.start = 0.03f, .lag = 0.1f};
+    const double start = (double)d.start, pi = 3.14159265358979323846;
+    for (float way = 0; way < 3; way += 0.25f) {
+        double growth = (double)ptie_diffusion_growth(&d, way), sigma = start * growth;
+        assert_near(sigma * sigma, start * start * (1 + (double)way / 0.1), 1e-6 * sigma * sigma);
+        double plume = gaussian_sum(sigma) * (double)ptie_plume_depth(&d, (float)growth);
+        double puff = pow(gaussian_sum(sigma), 2) * (double)ptie_puff_depth(&d, (float)growth);
+        /* Pure gas of the source: 2 pi s0^2 and (2 pi)^(3/2) s0^3, less the sqrt(2 pi) that the depth
+           leaves out.  Floats round. */
+        assert_near(plume, sqrt(2 * pi) * start * start, 5e-7 * plume);
+        assert_near(puff, 2 * pi * pow(start, 3), 5e-7 * puff);
+    }
+}
+
+/* The gas with the given refractivity at rest. */
+static bool is_a_gas(double refractivity) {
+    for (int kind = 0; kind < PTIE_GASES; kind++) {
+        double known = ptie_gas_refractivity(ptie_gas_get((ptie_gas_kind)kind), PTIE_AMBIENT_PA,
+                                             PTIE_AMBIENT_K);
+        if (fabs(refractivity / known - 1) < 1e-6) return true; /* floats round */
+    }
+    return false;
+}
+
+/* On the axis just behind the Mach disk the light crosses the jet's gas, and within the disk's radius
+   gas at rest instead of it. */
+static void the_axis_behind_a_mach_disk_is_at_rest(void **state) {
+    (void)state;
+    const ptie_scene scene = {.width = 256, .height = 256, .pixel_m = 20e-6, .wavelength_m = 532e-9};
+    const double unit_m = 256 * 20e-6;
+    int seen = 0;
+    for (uint64_t seed = 0; seed < 200; seed++) {
+        ptie_exhaust e;
+        ptie_random random;
+        ptie_random_init(&random, seed, PTIE_STREAM_FLOW, 0);
+        ptie_exhaust_draw(&e, &scene, &random, 0.03f);
+        if (e.disk == 0 || e.disk > 0.6f * e.core) continue; /* no disk, or mixed before it */
+        seen++;
+        assert_true(is_a_gas((double)(e.behind + e.air) / (wavenumber * unit_m)));
+        e.cell_height[0] = 0; /* without the waves that follow */
+        const float x = nextafterf(e.disk, 1), chord = ptie_projection_at(&e.disc, 0);
+        const ptie_parcel axis = {.x = x, .across = 0, .width = e.radius};
+        const double expected = (double)chord * ((double)e.gas * (double)(e.radius - e.disk_radius) +
+                                                 (double)e.behind * (double)e.disk_radius);
+        const double size = (double)chord * (fabs((double)e.gas) * (double)e.radius +
+                                             fabs((double)e.behind) * (double)e.disk_radius);
+        assert_near((double)ptie_exhaust_at(&e, &axis, x, 0), expected, 1e-6 * size);
+        /* Far downstream the slug is gone by e^-9, the jet's own gas is left. */
+        const ptie_parcel far = {.x = 0, .across = 0, .width = e.radius};
+        assert_near((double)ptie_exhaust_at(&e, &far, 10 * e.disk, 0),
+                    (double)(chord * e.gas * e.radius), 2e-4 * size);
+    }
+    assert_true(seen > 20);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shocks_follow_rankine_and_hugoniot),
@@ -89,6 +157,8 @@ int main(void) {
         cmocka_unit_test(expansions_follow_prandtl_and_meyer),
         cmocka_unit_test(an_underexpanded_jet_has_the_known_numbers),
         cmocka_unit_test(phases_have_the_known_size_and_sign),
+        cmocka_unit_test(diffusion_keeps_the_gas),
+        cmocka_unit_test(the_axis_behind_a_mach_disk_is_at_rest),
     };
     return cmocka_run_group_tests_name("flow/gas", tests, NULL, NULL);
 }
