@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -14,7 +15,13 @@ static ptie_status system_failure(const char *path, const char *what) {
     return PTIE_FAIL(PTIE_EIO, "%s: %s: %s", path, what, strerror(errno));
 }
 
+void ptie_output_unlock(ptie_output_file *file) {
+    if (file->path && file->lock >= 0) close(file->lock);
+    file->lock = -1;
+}
+
 static void forget(ptie_output_file *file) {
+    ptie_output_unlock(file);
     ptie_free(file->path);
     ptie_free(file->part);
     *file = (ptie_output_file){0};
@@ -56,10 +63,33 @@ ptie_status ptie_output_differs(const char *output, const char *other) {
     return PTIE_FAIL(PTIE_EINVAL, "%s: would be written over %s (expected a name of its own)", output, other);
 }
 
+static bool is_named(int descriptor, const char *path) {
+    struct stat x, y;
+    return fstat(descriptor, &x) == 0 && stat(path, &y) == 0 && x.st_dev == y.st_dev &&
+           x.st_ino == y.st_ino;
+}
+
+/* Creates `part`, or takes over what a crash left, as the only writer.  The lock goes with the process, and
+   file systems without locks do without. */
+static ptie_status lock_part(ptie_output_file *file) {
+    for (;;) {
+        file->lock = open(file->part, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        if (file->lock < 0) return system_failure(file->path, "cannot create");
+        if (flock(file->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+            return PTIE_FAIL(PTIE_EIO, "%s: is being written by someone else (expected %s to be free)", file->path,
+                             file->part);
+        if (is_named(file->lock, file->part)) break;
+        ptie_output_unlock(file); /* meanwhile the writer before renamed or removed it */
+    }
+    if (ftruncate(file->lock, 0) == 0 || errno == EINVAL /* a link to a device */) return PTIE_OK;
+    return system_failure(file->path, "cannot create");
+}
+
 ptie_status ptie_output_open(ptie_output_file *file, const char *path, bool overwrite) {
     *file = (ptie_output_file){0};
     PTIE_TRY(may_write(path, overwrite));
     size_t bytes = strlen(path) + sizeof ".part";
+    file->lock = -1;
     file->path = ptie_strdup(path);
     file->part = ptie_alloc(bytes, 1);
     if (!file->path || !file->part) {
@@ -67,14 +97,9 @@ ptie_status ptie_output_open(ptie_output_file *file, const char *path, bool over
         return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
     }
     snprintf(file->part, bytes, "%s.part", path);
-    FILE *stream = fopen(file->part, "wb");
-    if (!stream) {
-        ptie_status status = system_failure(path, "cannot create");
-        forget(file);
-        return status;
-    }
-    fclose(stream);
-    return PTIE_OK;
+    ptie_status status = lock_part(file);
+    if (status != PTIE_OK) forget(file);
+    return status;
 }
 
 static ptie_status sync_to_disk(const char *path) {

@@ -10,13 +10,16 @@
 /* An output on its way.  Libraries that open by name write to `part`; others take a stream of it. */
 typedef struct ptie_output_file {
     char *path, *part; /* both owned; NULL when not open */
+    int lock;          /* descriptor of `part`, or -1 */
 } ptie_output_file;
 
-/* Checks that `path` may be written (PTIE_EEXIST without overwrite; PTIE_EIO for a directory or a missing
-   folder) and creates an empty `part`. */
+/* Checks that `path` may be written (PTIE_EEXIST without overwrite; PTIE_EIO for a directory, a missing folder,
+   or while another writer, in this program or another, has it open) and creates an empty `part`. */
 ptie_status ptie_output_open(ptie_output_file *file, const char *path, bool overwrite);
 /* Syncs `part` to the disk and renames it to `path`.  On failure `part` is removed. */
 ptie_status ptie_output_commit(ptie_output_file *file);
+/* Lets others open the same output and saves a descriptor: for files whose name one that stays locked guards. */
+void ptie_output_unlock(ptie_output_file *file);
 /* Removes `part`.  Fine on a file that is not open. */
 void ptie_output_discard(ptie_output_file *file);
 

@@ -190,6 +190,7 @@ static ptie_status png_append(void *state, const float *frame) {
                              sizeof *output->files, path));
     ptie_output_file *file = &output->files[output->count];
     PTIE_TRY(ptie_output_open(file, path, output->job.overwrite));
+    if (output->count > 0) ptie_output_unlock(file); /* the first guards them all */
     output->count++;
     encoder e = {.output = output, .frame = frame};
     find_scale(&e, (size_t)width * (size_t)height);
@@ -201,11 +202,11 @@ static ptie_status png_complete(void *state, int64_t frames) {
     png_output *output = state;
     char path[PATH_BYTES];
     ptie_status status = PTIE_OK;
-    size_t done = 0;
-    while (done < output->count && status == PTIE_OK)
-        status = ptie_output_commit(&output->files[done++]);
-    for (size_t i = 0; status != PTIE_OK && i + 1 < done; i++)
-        if (file_name(output, i, path) == PTIE_OK) remove(path);
+    size_t left = output->count; /* the first, which guards them all, comes last */
+    while (left > 0 && status == PTIE_OK) status = ptie_output_commit(&output->files[--left]);
+    if (status != PTIE_OK)
+        for (size_t i = left + 1; i < output->count; i++)
+            if (file_name(output, i, path) == PTIE_OK) remove(path);
     png_discard(output);
     return status;
 }

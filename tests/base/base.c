@@ -224,6 +224,34 @@ static void output_appears_whole_or_not_at_all(void **state) {
         assert_fails(ptie_read_file(&data, &bytes, "/dev/full", 1 << 17), PTIE_EFORMAT, "too large");
 }
 
+static void one_writer_at_a_time(void **state) {
+    (void)state;
+    const char *path = support_temporary("shared.txt"), *part = support_temporary("shared.txt.part");
+    ptie_output_file first, second;
+    support_write(part, "left by a crash", 15);
+    assert_ok(ptie_output_open(&first, path, false));
+    assert_fails(ptie_output_open(&second, path, false), PTIE_EIO, "shared.txt: is being written by someone else");
+    assert_null(second.path);
+    ptie_output_discard(&second);
+    FILE *stream;
+    assert_ok(ptie_output_stream(&first, &stream));
+    fputs("abc", stream);
+    assert_ok(ptie_close_written(stream, path));
+    assert_fails(ptie_write_file(path, "def", 3, true), PTIE_EIO, "is being written by someone else");
+    assert_ok(ptie_output_commit(&first));
+    size_t bytes;
+    unsigned char *data = support_read(path, &bytes);
+    assert_int_equal(bytes, 3);
+    assert_memory_equal(data, "abc", 3);
+    free(data);
+    assert_ok(ptie_write_file(path, "def", 3, true));
+    assert_ok(ptie_output_open(&first, path, true));
+    ptie_output_unlock(&first);
+    assert_ok(ptie_write_file(path, "ghi", 3, true));
+    ptie_output_discard(&first);
+    assert_true(support_exists(path));
+}
+
 static void allocation_refuses_products_that_overflow(void **state) {
     (void)state;
     assert_null(ptie_alloc(SIZE_MAX / 2, 4));
@@ -244,6 +272,7 @@ int main(void) {
         cmocka_unit_test(ini_says_line_key_and_nearest_name),
         cmocka_unit_test(ini_lines_may_be_indented_and_long),
         cmocka_unit_test(output_appears_whole_or_not_at_all),
+        cmocka_unit_test(one_writer_at_a_time),
         cmocka_unit_test(allocation_refuses_products_that_overflow),
     };
     return cmocka_run_group_tests_name("base", tests, NULL, NULL);

@@ -31,6 +31,23 @@ An existing figure stops the work before it begins
   $ ls
   curves.png
 
+What another program is writing is left to it
+  $ python3 - <<'END'
+  > import fcntl, subprocess
+  > with open("jet.h5.part", "wb") as part:
+  >     part.write(b"half")
+  >     fcntl.flock(part, fcntl.LOCK_EX)
+  >     subprocess.run("ptie simulate jet -o jet.h5 --size 32 --frames 2", shell=True)
+  > print(open("jet.h5.part").read())
+  > END
+  half
+  ! ptie: jet.h5: is being written by someone else (expected jet.h5.part to be free)
+  $ ptie simulate jet -o jet.h5 --size 32 --frames 2
+  ! jet.h5: 2 frames of 32 x 32 px with the truth; rig in jet.ini
+  $ ls
+  jet.h5
+  jet.ini
+
 So does a figure without a folder, or of a frame that will not be there
   $ ptie train --preset paper -o m.safetensors --figure nowhere/curves.png
   ! ptie: nowhere/curves.png: cannot create: No such file or directory
