@@ -45,7 +45,8 @@ typedef struct ptie_writer ptie_writer;
 /* Creates a file for `info->frames` frames (0: not known yet) of one map; the kind is chosen by the
    ending of `path`: .npy .tif .tiff .h5 .hdf5 .png.  info->unit, frame_rate_hz, pixel_m are stored where
    the format can.  `name` is what the map is ("phase", "denoised"): letters, digits, '_', '-'.  The file
-   appears under `path` only at ptie_writer_close.  Errors: PTIE_EINVAL, PTIE_EEXIST, PTIE_EIO, PTIE_ENOMEM,
+   appears under `path` only at ptie_writer_close.  A PNG sequence replaces all of an older one, or none: frames
+   with the next numbers are removed with `overwrite`, and PTIE_EEXIST without.  Errors: PTIE_EINVAL, PTIE_EEXIST, PTIE_EIO, PTIE_ENOMEM,
    PTIE_EUNSUPPORTED (ending). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_writer_create(ptie_writer **out, const char *path,
                                                        const char *name,

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <png.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/image.h"
 #include "base/file.h"
@@ -62,6 +63,18 @@ static void png_discard(void *state) {
     ptie_free(output);
 }
 
+/* Frames that an older, longer sequence has behind the last of `count` would pass for ours: they
+ * go, or stay with all the others. */
+static ptie_status check_behind(const png_output *output, int64_t count) {
+    char path[PATH_BYTES];
+    if (!output->numbered || output->job.overwrite) return PTIE_OK;
+    PTIE_TRY(ptie_pattern_name(&output->pattern, count, path, sizeof path));
+    if (access(path, F_OK) != 0) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EEXIST,
+                     "%s: exists already, behind the last of %lld frames (use -f to remove it)",
+                     path, (long long)count);
+}
+
 static ptie_status png_create(void **state, const ptie_writer_job *job) {
     png_output *output;
     ptie_pattern pattern = {0};
@@ -76,6 +89,7 @@ static ptie_status png_create(void **state, const ptie_writer_job *job) {
     output->numbered = numbered;
     output->pattern = pattern;
     ptie_status status = ptie_alloc_status(&output->row, (size_t)job->info.width_px, 2, job->path);
+    if (status == PTIE_OK && job->info.frames > 0) status = check_behind(output, job->info.frames);
     if (status != PTIE_OK) {
         png_discard(output);
         return status;
@@ -197,16 +211,21 @@ static ptie_status png_append(void *state, const float *frame) {
     return write_file(&e, file);
 }
 
+static void remove_behind(const png_output *output) {
+    char path[PATH_BYTES];
+    for (size_t i = output->count; file_name(output, i, path) == PTIE_OK && remove(path) == 0;) i++;
+}
+
 static ptie_status png_complete(void *state, int64_t frames) {
-    (void)frames;
     png_output *output = state;
     char path[PATH_BYTES];
-    ptie_status status = PTIE_OK;
+    ptie_status status = check_behind(output, frames);
     size_t left = output->count; /* the first, which guards them all, comes last */
     while (left > 0 && status == PTIE_OK) status = ptie_output_commit(&output->files[--left]);
     if (status != PTIE_OK)
         for (size_t i = left + 1; i < output->count; i++)
             if (file_name(output, i, path) == PTIE_OK) remove(path);
+    if (status == PTIE_OK && output->numbered) remove_behind(output);
     png_discard(output);
     return status;
 }

@@ -176,6 +176,29 @@ static void a_png_in_the_way_keeps_all(void **state) {
     assert_true(support_exists(second));
 }
 
+/* An older sequence of six frames, rewritten with three. */
+static void a_shorter_png_sequence_replaces_all_of_the_longer(void **state) {
+    (void)state;
+    char name[16];
+    const char *pattern = support_temporary("old_%d.png");
+    for (int i = T; i < T + 3; i++) {
+        snprintf(name, sizeof name, "old_%d.png", i);
+        support_write(support_temporary(name), "old", 3);
+    }
+    support_write(support_temporary("old_99.png"), "other", 5);
+    for (int announced = 0; announced <= T; announced += T)
+        assert_fails(write_frames(pattern, announced, T, false), PTIE_EEXIST,
+                     "old_3.png: exists already, behind the last of 3 frames");
+    support_assert_nothing_left(support_temporary("old_0.png"));
+    support_assert_nothing_left(support_temporary("old_2.png"));
+    assert_ok(write_frames(pattern, T, T, true));
+    for (int i = 0; i < T + 3; i++) {
+        snprintf(name, sizeof name, "old_%d.png", i);
+        assert_int_equal(support_exists(support_temporary(name)), i < T);
+    }
+    assert_true(support_exists(support_temporary("old_99.png")));
+}
+
 static void arguments_are_checked(void **state) {
     (void)state;
     ptie_writer *writer = NULL;
@@ -382,6 +405,7 @@ int main(void) {
         cmocka_unit_test(nothing_appears_before_the_end),
         cmocka_unit_test(the_number_of_frames_is_kept),
         cmocka_unit_test(several_frames_need_a_pattern),
+        cmocka_unit_test(a_shorter_png_sequence_replaces_all_of_the_longer),
         cmocka_unit_test(a_png_in_the_way_keeps_all),
         cmocka_unit_test(arguments_are_checked),
         cmocka_unit_test(a_png_holds_finite_values),
