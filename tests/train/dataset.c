@@ -185,7 +185,7 @@ static void cancelling_leaves_no_file(void **state) {
     int limit = 1;
     const ptie_progress stopping = {stop_after, &limit};
     assert_fails(ptie_dataset_write(shared_ctx, path, shared_preset, 5, COUNT, false, stopping),
-                 PTIE_ECANCELLED, "cancelled after 64 of 70");
+                 PTIE_ECANCELLED, "cancelled after 32 of 70");
     support_assert_nothing_left(path);
 }
 
