@@ -71,11 +71,11 @@ def psnr_db(estimates, clean):
     return float(np.mean(-10 * np.log10(((estimates - clean) ** 2).mean((1, 2, 3), dtype="f8"))))
 
 
-def median_seconds(call, seconds):
-    """Median duration of a call, repeated until `seconds` have passed."""
-    durations, end = [], time.perf_counter() + seconds
-    while not durations or time.perf_counter() < end:
+def durations(call, seconds):
+    """How long each call takes, in seconds; repeated until `seconds` have passed, at least once."""
+    taken, end = [], time.perf_counter() + seconds
+    while not taken or time.perf_counter() < end:
         start = time.perf_counter()
         call()
-        durations.append(time.perf_counter() - start)
-    return float(np.median(durations))
+        taken.append(time.perf_counter() - start)
+    return taken

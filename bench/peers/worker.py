@@ -2,16 +2,18 @@
 
 Answers one JSON line for every JSON line on standard input: ["versions"], ["candidates"],
 ["prepare", row, name] -> how far its results are from ptie's: the largest difference, and what PSNR in dB is lost;
-["measure", row, name, seconds] -> seconds per call.
+["measure", row, name, seconds] -> durations of the calls.
 """
+import ctypes
 import importlib
 import json
 import os
+import signal
 import sys
 
 import numpy as np
 
-from shared import Shared, median_seconds, psnr_db
+from shared import Shared, durations, psnr_db
 
 GOLDEN_STEPS, GOLDEN_RATE = 10, 1e-3
 
@@ -56,7 +58,7 @@ class Worker:
     def measure(self, row, name, seconds):
         call = self.calls[row, name]
         call()
-        return median_seconds(call, seconds)
+        return durations(call, seconds)
 
 
 def answer(worker, request):
@@ -67,7 +69,14 @@ def answer(worker, request):
         return {"error": f"{type(error).__name__}: {error}"}
 
 
+def die_with_parent():
+    """Also while stopped, when nothing would notice."""
+    pr_set_pdeathsig = 1
+    ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)
+
+
 def main():
+    die_with_parent()
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)  # whatever the frameworks print goes to the log
     worker = Worker(*sys.argv[1:])
