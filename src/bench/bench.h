@@ -60,9 +60,6 @@ ptie_status ptie_bench_measure(ptie_bench *bench, const ptie_bench_case *measure
 /* The same for a value that needs no timing; NaN if it could not be found out. */
 ptie_status ptie_bench_note(ptie_bench *bench, const char *name, const char *unit, double value);
 
-/* Adds a sample; false when there is no place for another after it. */
-bool ptie_bench_add_sample(ptie_bench_samples *samples, double rate);
-
 typedef struct ptie_bench_spread {
     double median, low, high;
 } ptie_bench_spread;

@@ -19,12 +19,6 @@ int32_t ptie_bench_threads(const ptie_bench *bench, ptie_bench_mode mode) {
     return mode == PTIE_BENCH_ONE ? 1 : ptie_pool_threads(bench->engine->pool);
 }
 
-bool ptie_bench_add_sample(ptie_bench_samples *samples, double rate) {
-    assert(samples->count < PTIE_BENCH_SAMPLES);
-    samples->rate[samples->count++] = rate;
-    return samples->count < PTIE_BENCH_SAMPLES;
-}
-
 static int ascending(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
@@ -133,18 +127,27 @@ static ptie_status take_samples(ptie_bench *bench, const ptie_bench_case *measur
     do {
         PTIE_TRY(sample_rate(bench, measured, calls, &rate));
         if (measured->flops > 0) PTIE_TRY(read_peak(bench, measured->mode, &peak));
-        samples->share[samples->count] = 1e-9 * measured->flops * rate / peak;
-    } while (ptie_bench_add_sample(samples, rate) && ptie_now_s() - start_s < bench->seconds);
+        samples->rate[samples->count] = rate;
+        samples->share[samples->count++] = 1e-9 * measured->flops * rate / peak;
+    } while (samples->count < PTIE_BENCH_SAMPLES && ptie_now_s() - start_s < bench->seconds);
+    return PTIE_OK;
+}
+
+static ptie_status read_peaks(ptie_bench *bench, ptie_bench_mode mode, double *gflops) {
+    enum { READINGS = 5 };
+    double reading[READINGS];
+    for (int i = 0; i < READINGS; i++) PTIE_TRY(read_peak(bench, mode, &reading[i]));
+    *gflops = ptie_bench_summarise(reading, READINGS).median;
     return PTIE_OK;
 }
 
 /* Work that cannot be interrupted: the peak before and after, the larger of the two. */
 static ptie_status take_own_samples(ptie_bench *bench, const ptie_bench_case *measured,
                                     ptie_bench_samples *samples) {
-    double before = 0, after = 0;
-    PTIE_TRY(read_peak(bench, measured->mode, &before));
+    double before, after;
+    PTIE_TRY(read_peaks(bench, measured->mode, &before));
     PTIE_TRY(measured->sample(bench, measured, samples));
-    PTIE_TRY(read_peak(bench, measured->mode, &after));
+    PTIE_TRY(read_peaks(bench, measured->mode, &after));
     for (int32_t i = 0; i < samples->count; i++)
         samples->share[i] = 1e-9 * measured->flops * samples->rate[i] / fmax(before, after);
     return PTIE_OK;

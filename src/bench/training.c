@@ -75,13 +75,14 @@ typedef struct training {
 static int watch(void *user, uint64_t done, uint64_t total, const char *note) {
     (void)total, (void)note;
     training *t = user;
+    ptie_bench_samples *samples = t->samples;
     const double now_s = ptie_now_s();
-    bool full = false;
-    if (t->done > 0 && done > t->done)
-        full = !ptie_bench_add_sample(t->samples, (double)(done - t->done) / (now_s - t->last_s));
+    const bool counts = t->done > 0 && done > t->done; /* a step, and not the first */
+    if (counts && samples->count < PTIE_BENCH_SAMPLES)
+        samples->rate[samples->count++] = (double)(done - t->done) / (now_s - t->last_s);
     t->done = done;
     t->last_s = now_s;
-    return full || (t->samples->count > 0 && now_s > t->until_s);
+    return samples->count == PTIE_BENCH_SAMPLES || (samples->count > 0 && now_s > t->until_s);
 }
 
 static ptie_status train(ptie_bench *bench, const ptie_bench_case *measured,

@@ -28,14 +28,6 @@ static void spread_is_middle_and_ends(void **state) {
     assert_near(four.high, 8, 0);
 }
 
-static void samples_end_when_there_is_no_place(void **state) {
-    (void)state;
-    ptie_bench_samples samples = {.count = 0};
-    for (int i = 1; i < PTIE_BENCH_SAMPLES; i++) assert_true(ptie_bench_add_sample(&samples, i));
-    assert_false(ptie_bench_add_sample(&samples, 1));
-    assert_int_equal(samples.count, PTIE_BENCH_SAMPLES);
-}
-
 /* multiply_add is what the others are measured against. */
 static void every_kernel_is_measured(void **state) {
     (void)state;
@@ -186,7 +178,6 @@ static int stop(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(spread_is_middle_and_ends),
-        cmocka_unit_test(samples_end_when_there_is_no_place),
         cmocka_unit_test(every_kernel_is_measured),
         cmocka_unit_test(operations_are_those_of_the_paper),
         cmocka_unit_test(groups_give_what_they_announce),
