@@ -5,7 +5,7 @@
 
 #include <ptie/run.h>
 
-enum { TABLE_ROWS = 128, TABLE_COLUMNS = 8, CELL_BYTES = 64 };
+enum { TABLE_ROWS = 256, TABLE_COLUMNS = 8, CELL_BYTES = 64 };
 
 typedef struct table {
     char cell[TABLE_ROWS][TABLE_COLUMNS][CELL_BYTES];

@@ -142,6 +142,7 @@ static const kernel_case kernel_cases[] = {
 
 static const kernel_case family_cases[] = {
     {"conv3x3", "3x3", SHAPES(widths), .taps = 9, .call = conv3x3},
+    {"winograd3x3", "3x3 Winograd", SHAPES(widths), .taps = 9, .call = winograd3x3},
 };
 
 /* A fresh map in the block; its halo is zero. */
