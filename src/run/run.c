@@ -5,8 +5,8 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "io/recording.h"
 #include "metrics/metrics.h"
@@ -35,12 +35,6 @@ typedef struct run {
     double *phase_metrics, *denoised_metrics, *truth_metrics; /* (frames, PTIE_RUN_METRICS) */
     int64_t done; /* frames of the current block's first */
 } run;
-
-static double now_s(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* Recording frame that is frame i of the run. */
 static int64_t recorded_frame(const run *r, int64_t i) {
@@ -261,7 +255,7 @@ static void release(run *r) {
 
 ptie_status ptie_run_pipeline(const ptie_engine *engine, const ptie_run_params *params,
                               ptie_run_summary *summary, ptie_progress progress) {
-    double start = now_s();
+    double start = ptie_now_s();
     run r = {.engine = engine, .params = params};
     ptie_status status;
     PTIE_TRY_DONE(prepare(&r));
@@ -274,7 +268,7 @@ ptie_status ptie_run_pipeline(const ptie_engine *engine, const ptie_run_params *
     PTIE_TRY_DONE(ptie_h5_close(output));
     if (params->metrics_csv) PTIE_TRY_DONE(ptie_output_commit(&r.csv));
     *summary = summarise(&r);
-    summary->seconds = now_s() - start;
+    summary->seconds = ptie_now_s() - start;
 done:
     release(&r);
     return status;
