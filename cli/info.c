@@ -53,6 +53,8 @@ static ptie_status describe_model(facts *f, const char *path) {
     static const char *const notes[][2] = {{"trained on", "ptie.trained_on"},
                                            {"epochs", "ptie.epochs"},
                                            {"seed", "ptie.seed"},
+                                           {"generator", "ptie.generator"},
+                                           {"kernels", "ptie.kernels"},
                                            {"written by", "ptie.version"}};
     ptie_model *model;
     char number[32], widths[FACT_BYTES] = "";

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* ptie train: data set or preset -> model. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -162,6 +163,19 @@ static int conclude(const settings *s) {
     return code;
 }
 
+/* A run that goes on with other kernels is the same but for rounding. */
+static void tell_kernels(const settings *s, const ptie_ctx *ctx) {
+    char path[PATH_BYTES];
+    ptie_model *model;
+    snprintf(path, sizeof path, "%s.last", s->output);
+    if (ptie_model_load(&model, path) != PTIE_OK) return; /* training says why */
+    const char *before = ptie_model_note(model, "ptie.kernels"), *now = ptie_ctx_cpu(ctx);
+    if (before && strcmp(before, now) != 0)
+        say("%s: begun with %s kernels, goes on with %s: the same but for rounding", path, before,
+            now);
+    ptie_model_free(model);
+}
+
 static int train(settings *s) {
     progress_bar progress;
     ptie_ctx *ctx = NULL;
@@ -174,6 +188,7 @@ static int train(settings *s) {
         progress_start(&progress, s->compute.progress, "train", "samples");
         say("%s: %s trainable parameters", ptie_model_name(model),
             with_separators(number, ptie_model_trainable(model)));
+        if (s->train.resume) tell_kernels(s, ctx);
         status = ptie_train(ctx, model, s->samples.dataset, s->output, &s->train,
                             (ptie_progress){report, &progress});
         progress_end(&progress);

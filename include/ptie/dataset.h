@@ -11,6 +11,10 @@
 
 #include <ptie/context.h>
 
+/* Raised with every change of the generator that changes samples by more than rounding: the same preset, seed,
+   index and generator are the same sample.  Kept in data set files and models. */
+#define PTIE_GENERATOR 1
+
 typedef struct ptie_preset ptie_preset;
 
 /* `name`: a built-in preset ("paper", "realistic") or the path of an INI file.  Errors: PTIE_ENAME
@@ -44,7 +48,7 @@ PTIE_API PTIE_NODISCARD ptie_status ptie_preset_sample(const ptie_preset *preset
 
 /* Draws samples 0..count-1 on the context's threads and writes an HDF5 file: /clean and /noisy
    [N, H, W] float32, one dataset per field of ptie_sample_info [N], attributes preset (text), seed
-   (at most 2^63 - 1), count, version, split ("train 0:800", ...).  The bytes do not depend on the thread
+   (at most 2^63 - 1), count, generator (PTIE_GENERATOR), version, split ("train 0:800", ...).  The bytes do not depend on the thread
    count; memory does not depend on count.  The file appears under `path`
    only when complete.  Errors: PTIE_EINVAL, PTIE_EEXIST, PTIE_EIO, PTIE_ENOMEM, PTIE_ECANCELLED. */
 PTIE_API PTIE_NODISCARD ptie_status ptie_dataset_write(ptie_ctx *ctx, const char *path,

@@ -22,7 +22,7 @@ typedef struct ptie_train_params {
     uint64_t steps_limit;     /* stop after so many optimiser steps in all; 0 = none */
     int32_t checkpoint_steps; /* also write `last` every so many steps; 0 = per epoch only */
     bool overwrite;           /* replace an existing model */
-    bool resume;              /* go on from <path>.last; exact to the bit on the same kernel level */
+    bool resume;              /* go on from <path>.last; exact to the bit on the same kernel level (ptie_ctx_cpu) */
 } ptie_train_params;
 
 PTIE_API void ptie_train_params_init(ptie_train_params *params);
@@ -41,6 +41,8 @@ typedef struct ptie_scores {
    The same bits for any number of threads, and 20 steps = 10 + resume + 10.
    On PTIE_ECANCELLED and at a limit `<path>.last` holds the last finished step; an epoch whose last step
    is done is validated before a limit stops the run.
+   The model's note "ptie.kernels" lists the kernel levels the run used: more than one means that it was
+   resumed on another, and is what it would have been but for rounding.
    Resuming takes the parameters of the run that is continued, except patience, limits and
    checkpoint_steps, which may change.
    Errors: PTIE_EINVAL (also resume with other parameters or data), PTIE_ESIZE (data and model),

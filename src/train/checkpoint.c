@@ -15,7 +15,16 @@
 #define NOTE_SETTINGS NOTE_PREFIX "settings"
 #define NOTE_POSITION NOTE_PREFIX "position"
 #define NOTE_HISTORY NOTE_PREFIX "history"
+#define NOTE_KERNELS "ptie.kernels"
 #define NAME_BYTES 128
+
+/* What the model was trained with, where the settings do not say it. */
+static ptie_status note_run(ptie_trainer *t) {
+    char generator[24];
+    snprintf(generator, sizeof generator, "%lld", (long long)t->dataset->generator);
+    PTIE_TRY(ptie_nn_set_note(t->model, "ptie.generator", generator));
+    return ptie_nn_set_note(t->model, NOTE_KERNELS, ptie_cpu_name(t->engine->level));
+}
 
 ptie_status ptie_checkpoint_describe(ptie_trainer *t) {
     const ptie_train_params *p = t->params;
@@ -29,12 +38,13 @@ ptie_status ptie_checkpoint_describe(ptie_trainer *t) {
                      p->weight_decay, p->beta1, p->beta2, p->epsilon);
     ptie_text_append(text, "w_l1 = %.17g\nw_ssim = %.17g\nw_mse = %.17g\nseed = %llu\n", p->w_l1,
                      p->w_ssim, p->w_mse, (unsigned long long)p->seed);
-    ptie_text_append(text, "samples = %llu\nsamples_seed = %llu\n%s",
+    ptie_text_append(text, "samples = %llu\nsamples_seed = %llu\ngenerator = %lld\n%s",
                      (unsigned long long)t->dataset->count, (unsigned long long)t->dataset->seed,
-                     t->dataset->preset_text);
+                     (long long)t->dataset->generator, t->dataset->preset_text);
     ptie_text_append(&t->last_path, "%s.last", t->path);
-    if (!text->failed && !t->last_path.failed) return PTIE_OK;
-    return PTIE_FAIL(PTIE_ENOMEM, "training: out of memory");
+    if (text->failed || t->last_path.failed)
+        return PTIE_FAIL(PTIE_ENOMEM, "training: out of memory");
+    return note_run(t);
 }
 
 /* Tensors and notes of a checkpoint on its way to the file. */
@@ -221,12 +231,24 @@ static ptie_status restore_position(ptie_trainer *t, const ptie_safetensors *fil
                      NOTE_POSITION, (unsigned long long)t->step);
 }
 
+/* "avx512", or "avx512, avx2" where a run went on with other kernels: what they compute differs by
+ * rounding, which is no reason to stop it on another machine. */
+static ptie_status restore_kernels(ptie_trainer *t, const ptie_safetensors *file) {
+    char all[64];
+    const char *before = ptie_safetensors_note(file, NOTE_KERNELS);
+    const char *now = ptie_cpu_name(t->engine->level);
+    if (!before) return PTIE_OK;
+    snprintf(all, sizeof all, strstr(before, now) ? "%s" : "%s, %s", before, now);
+    return ptie_nn_set_note(t->model, NOTE_KERNELS, all);
+}
+
 static ptie_status restore_from(ptie_trainer *t, const ptie_safetensors *file) {
     const char *settings;
     PTIE_TRY(find_note(&settings, file, NOTE_SETTINGS, t->last_path.data));
     PTIE_TRY(compare_settings(t->settings.data, settings, t->last_path.data));
     PTIE_TRY(restore_position(t, file));
     PTIE_TRY(restore_model(t, file));
+    PTIE_TRY(restore_kernels(t, file));
     return restore_moments(t, file);
 }
 

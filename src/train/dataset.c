@@ -63,6 +63,7 @@ static ptie_status draw_from(ptie_dataset *dataset, const ptie_preset *preset, u
     dataset->height_px = preset->height_px;
     dataset->seed = seed;
     dataset->count = count;
+    dataset->generator = PTIE_GENERATOR;
     dataset->preset_text = ptie_strdup(preset->text);
     if (!dataset->preset_text) return PTIE_FAIL(PTIE_ENOMEM, "data set: out of memory");
     return ptie_sampler_create(&dataset->sampler, preset);
@@ -125,6 +126,8 @@ static ptie_status read_attributes(ptie_dataset *dataset, const char *path) {
                          "%s: attribute count does not fit /clean (expected %llu, found %lld)",
                          path, (unsigned long long)dataset->count, (long long)count);
     dataset->seed = (uint64_t)seed;
+    if (ptie_h5_get_integer(dataset->file->h5, "/", "generator", &dataset->generator) != PTIE_OK)
+        dataset->generator = 0;
     return PTIE_OK;
 }
 

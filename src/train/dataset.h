@@ -18,6 +18,7 @@ typedef struct ptie_sample_file {
 struct ptie_dataset {
     int32_t width_px, height_px;
     uint64_t count, seed;
+    int64_t generator; /* PTIE_GENERATOR, or that of the file; 0: the file does not say */
     char *preset_text;
     ptie_sampler *sampler;  /* samples are drawn, */
     ptie_sample_file *file; /* or read; the other is NULL */

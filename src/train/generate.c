@@ -103,6 +103,7 @@ static ptie_status describe(ptie_h5 *h5, const ptie_preset *preset, uint64_t see
         PTIE_TRY(
             ptie_h5_dataset(h5, ptie_info_columns[c].path, ptie_info_columns[c].type, 1, dims, 0));
     PTIE_TRY(ptie_h5_set_text(h5, "/", "preset", preset->text));
+    PTIE_TRY(ptie_h5_set_integer(h5, "/", "generator", PTIE_GENERATOR));
     PTIE_TRY(ptie_h5_set_text(h5, "/", "version", ptie_version()));
     PTIE_TRY(ptie_h5_set_integer(h5, "/", "seed", (int64_t)seed));
     PTIE_TRY(ptie_h5_set_integer(h5, "/", "count", (int64_t)count));

@@ -36,7 +36,7 @@ typedef struct ptie_trainer {
 } ptie_trainer;
 
 /* Fills last_path, and settings: everything that must agree between a run and its continuation, one
-   "key = value" per line. */
+   "key = value" per line.  Notes generator and kernels in the model. */
 ptie_status ptie_checkpoint_describe(ptie_trainer *trainer);
 /* Writes <path>.last: model, moments (opt.m.*, opt.v.*), position. */
 ptie_status ptie_checkpoint_save(const ptie_trainer *trainer);

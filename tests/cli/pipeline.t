@@ -38,6 +38,8 @@ Simulate, train, evaluate, run, denoise, measure
   trained on  preset small, seed 1, 32 of 40 samples
   epochs      2
   seed        0
+  generator   1
+  kernels     * (glob)
   written by  0.1.0
   $ ptie evaluate m.safetensors -p $TESTS/small.ini -n 40 --data-seed 2 --figure examples.svg
   4 samples (test)
@@ -153,6 +155,16 @@ A rig's data sets are those of HDF5 files; planes in other files are what they a
   $ ptie reconstruct --rig jet.ini plus.npy -o c.h5
   ! ptie: run: plane 'minus' is missing (expected a recording of its own, since plus.npy has one plane)
   [2]
+
+Training goes on with other kernels, and says so
+  $ ptie train -p $TESTS/small.ini -n 10 -e 1 -b 4 -o m.safetensors --widths 2,2 --cpu scalar --steps 1
+  ! unet-2-2: 261 trainable parameters
+  ! m.safetensors: stopped before the first epoch ended; --resume goes on from m.safetensors.last
+  $ ptie train -p $TESTS/small.ini -n 10 -e 1 -b 4 -o m.safetensors --widths 2,2 --resume 2>&1 | grep -v epoch
+  unet-2-2: 261 trainable parameters
+  m.safetensors.last: begun with scalar kernels, goes on with *: the same but for rounding (glob)
+  $ ptie info m.safetensors | grep kernels
+  kernels     scalar, * (glob)
 
 Threads do not change a byte
   $ ptie dataset -T 1 -p $TESTS/small.ini -n 9 -o d1.h5

@@ -140,6 +140,76 @@ static void a_file_continues_what_its_preset_began(void **state) {
     ptie_ctx_free(ctx);
 }
 
+static void assert_note(const char *path, const char *key, const char *expected) {
+    ptie_model *model;
+    assert_ok(ptie_model_load(&model, path));
+    assert_non_null(ptie_model_note(model, key));
+    assert_string_equal(ptie_model_note(model, key), expected);
+    ptie_model_free(model);
+}
+
+static ptie_status train_with_kernels(const char *path, const char *cpu, uint64_t steps_limit) {
+    ptie_ctx *ctx;
+    ptie_ctx_params c;
+    ptie_ctx_params_init(&c);
+    c.cpu = cpu;
+    assert_ok(ptie_ctx_create(&ctx, &c));
+    ptie_preset *preset = tiny_preset(TINY_SIDE, "3 % .. 10 %");
+    ptie_model *model = tiny_model();
+    ptie_dataset *dataset;
+    const ptie_train_params params = params_with(steps_limit, support_exists(path));
+    assert_ok(ptie_dataset_from_preset(&dataset, preset, 1, TINY_SAMPLES));
+    const ptie_status status = ptie_train(ctx, model, dataset, path, &params, silent);
+    ptie_dataset_free(dataset);
+    ptie_model_free(model);
+    ptie_preset_free(preset);
+    ptie_ctx_free(ctx);
+    return status;
+}
+
+static void kernels_and_generator_are_noted(void **state) {
+    (void)state;
+    char path[256], both[64];
+    ptie_ctx *ctx = tiny_context(1);
+    const char *best = ptie_ctx_cpu(ctx);
+    snprintf(path, sizeof path, "%s", support_temporary("kernels"));
+    assert_ok(train_with_kernels(path, best, 6));
+    assert_note(path, "ptie.kernels", best);
+    assert_note(path, "ptie.generator", "1");
+    assert_int_equal(PTIE_GENERATOR, 1);
+    assert_ok(train_with_kernels(path, best, 7));
+    assert_note(side_file(path, ".last"), "ptie.kernels", best);
+    snprintf(both, sizeof both, strcmp(best, "scalar") ? "%s, scalar" : "%s", best);
+    for (uint64_t steps = 8; steps <= 9; steps++) {
+        assert_ok(train_with_kernels(path, "scalar", steps));
+        assert_note(side_file(path, ".last"), "ptie.kernels", both);
+    }
+    ptie_ctx_free(ctx);
+}
+
+/* As a data set file of a later revision would. */
+static void samples_of_another_generator_are_other_samples(void **state) {
+    (void)state;
+    char path[256], file[256];
+    snprintf(path, sizeof path, "%s", support_temporary("generator"));
+    snprintf(file, sizeof file, "%s", support_temporary("generator.h5"));
+    train_steps(path, 1, 6, false);
+    ptie_ctx *ctx = tiny_context(1);
+    ptie_preset *preset = tiny_preset(TINY_SIDE, "3 % .. 10 %");
+    ptie_model *model = tiny_model();
+    ptie_dataset *dataset;
+    const ptie_train_params params = params_with(0, true);
+    assert_ok(ptie_dataset_write(ctx, file, preset, 1, TINY_SAMPLES, false, silent));
+    support_python("import h5py, sys\nh5py.File(sys.argv[1], 'a').attrs['generator'] = 7\n", file);
+    assert_ok(ptie_dataset_open(&dataset, file));
+    assert_fails(ptie_train(ctx, model, dataset, path, &params, silent), PTIE_EINVAL,
+                 "expected 'generator = 1', found 'generator = 7'");
+    ptie_dataset_free(dataset);
+    ptie_model_free(model);
+    ptie_preset_free(preset);
+    ptie_ctx_free(ctx);
+}
+
 static int stop_at_report(void *user, uint64_t done, uint64_t total, const char *note) {
     assert_true(done <= total);
     assert_non_null(note);
@@ -349,6 +419,8 @@ int main(void) {
         cmocka_unit_test(twenty_steps_are_ten_and_ten),
         cmocka_unit_test(threads_do_not_change_a_bit),
         cmocka_unit_test(a_file_continues_what_its_preset_began),
+        cmocka_unit_test(kernels_and_generator_are_noted),
+        cmocka_unit_test(samples_of_another_generator_are_other_samples),
         cmocka_unit_test(cancelling_anywhere_leaves_a_state_to_go_on_from),
         cmocka_unit_test(kill_9_at_any_moment_loses_nothing),
         cmocka_unit_test(other_settings_are_named),
