@@ -24,7 +24,8 @@ static const char notes[] =
     "     prints zeros in the background, so look at CNR beside it\n"
     "BNS  standard deviation in the background\n"
     "CNR  |mean jet - mean background| / sqrt(var jet + var background)\n"
-    "RMSE, correlation: against the truth, means taken out\n";
+    "RMSE, correlation: against the truth, means taken out\n"
+    "signal kept: slope of the map on the truth; 1 = all of it, 0 = erased\n";
 
 typedef struct settings {
     const char *truth, *figure;

@@ -30,7 +30,8 @@ static const char notes[] =
     "pattern with one %d.\n\n"
     "The table has mean and standard deviation over frames: MGM, mean gradient in\n"
     "the jet; SBR, mean jet / mean background; BNS, deviation of the background;\n"
-    "CNR, contrast over noise; with --truth also RMSE and correlation.\n";
+    "CNR, contrast over noise; with --truth also RMSE, correlation,\n"
+    "and the share of the signal kept.\n";
 
 typedef struct settings {
     compute_options compute;

@@ -130,7 +130,8 @@ static ptie_status compare_with_truth(series_set *set, ptie_comparison *found, i
 
 static ptie_status measure_one(series_set *set, series *s, int64_t t) {
     ptie_flow_metrics flow;
-    ptie_comparison truth = {.rmse = (double)NAN, .correlation = (double)NAN};
+    ptie_comparison truth = {
+        .rmse = (double)NAN, .correlation = (double)NAN, .signal_kept = (double)NAN};
     ptie_status status =
         ptie_recording_read(s->recording, s == set->truth ? true_frame(set, t) : t, set->map);
     if (status == PTIE_OK)
@@ -138,8 +139,8 @@ static ptie_status measure_one(series_set *set, series *s, int64_t t) {
     if (status == PTIE_OK && set->truth && s != set->truth)
         status = compare_with_truth(set, &truth, t);
     if (status != PTIE_OK) return status;
-    const double found[MEASURES] = {flow.mgm, flow.sbr,   flow.bns,
-                                    flow.cnr, truth.rmse, truth.correlation};
+    const double found[MEASURES] = {flow.mgm,   flow.sbr,          flow.bns,         flow.cnr,
+                                    truth.rmse, truth.correlation, truth.signal_kept};
     for (int k = 0; k < MEASURES; k++) s->value[k][t] = found[k];
     return PTIE_OK;
 }

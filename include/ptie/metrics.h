@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Numbers that say how good a phase map is: against truth, and without.  Paper sections 3.5 and 4.4,
- * docs/math.md (Q1)-(Q9).  Images are height x width, row-major, contiguous.  No allocation unless said.
+ * docs/math.md (Q1)-(Q11).  Images are height x width, row-major, contiguous.  No allocation unless said.
  */
 #ifndef PTIE_METRICS_H
 #define PTIE_METRICS_H
@@ -13,6 +13,8 @@ typedef struct ptie_comparison {
     double rmse;        /* root mean square of a - b */
     double ssim;        /* 11x11 Gaussian, sigma 1.5, valid windows (Q3); NaN below 11 x 11 */
     double correlation; /* Pearson (Q8); NaN if an image is constant */
+    double signal_kept; /* share of the truth's signal in the estimate (Q10): 1 all, 0 none; NaN if the truth
+                           is constant */
 } ptie_comparison;
 
 /* Compares an estimate with the truth.  `range` is MAX of PSNR and L of SSIM: 1 for [0, 1] maps.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* An estimate against the truth, pixel by pixel.  docs/math.md (Q1), (Q2), (Q8). */
+/* An estimate against the truth, pixel by pixel.  docs/math.md (Q1), (Q2), (Q8), (Q10), (Q11). */
 #include <math.h>
 
 #include "base/image.h"
@@ -11,15 +11,19 @@ static double mean(const float *values, size_t count) {
     return sum / (double)count;
 }
 
-/* Pearson's r from centred sums; 0 / 0 = NaN for a constant image. */
-static double correlation(const float *a, const float *b, size_t count) {
+/* Centred sums of two images; 0 / 0 = NaN where one is constant. */
+typedef struct moments {
+    double aa, bb, ab;
+} moments;
+
+static moments centred(const float *a, const float *b, size_t count) {
     const double mean_a = mean(a, count), mean_b = mean(b, count);
-    double aa = 0, bb = 0, ab = 0;
+    moments m = {0};
     for (size_t i = 0; i < count; i++) {
         const double u = (double)a[i] - mean_a, v = (double)b[i] - mean_b;
-        aa += u * u, bb += v * v, ab += u * v;
+        m.aa += u * u, m.bb += v * v, m.ab += u * v;
     }
-    return ab / sqrt(aa * bb);
+    return m;
 }
 
 ptie_status ptie_metrics_compare(ptie_comparison *out, const float *estimate, const float *truth,
@@ -35,12 +39,14 @@ ptie_status ptie_metrics_compare(ptie_comparison *out, const float *estimate, co
         absolute += fabs(d), squares += d * d;
     }
     const double mse = squares / (double)count;
+    const moments m = centred(estimate, truth, count);
     *out = (ptie_comparison){
         .psnr_db = 10 * log10(range * range / mse),
         .mae = absolute / (double)count,
         .rmse = sqrt(mse),
         .ssim = ssim,
-        .correlation = correlation(estimate, truth, count),
+        .correlation = m.ab / sqrt(m.aa * m.bb),
+        .signal_kept = m.ab / m.bb,
     };
     return PTIE_OK;
 }

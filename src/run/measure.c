@@ -6,15 +6,16 @@
 #include "base/image.h"
 #include "metrics/metrics.h"
 
-static const char *const names[PTIE_RUN_METRICS] = {"mgm", "sbr", "bns", "cnr", "rmse_rad", "correlation"};
+static const char *const names[PTIE_RUN_METRICS] = {"mgm", "sbr", "bns", "cnr", "rmse_rad", "correlation",
+                                                   "signal_kept"};
 
 const char *ptie_run_metric_name(int which) {
     return names[which];
 }
 
-/* Standard deviation of the difference, and Pearson's correlation: both blind to the means. */
-static void compare_with_truth(double *rmse, double *correlation, const float *map, const float *truth,
-                               size_t count) {
+/* Standard deviation of the difference, Pearson's correlation, and the slope on the truth: all blind to the
+   means. */
+static void compare_with_truth(double *value, const float *map, const float *truth, size_t count) {
     double mean_map = 0, mean_truth = 0, difference = 0, map2 = 0, truth2 = 0, cross = 0;
     for (size_t i = 0; i < count; i++) {
         mean_map += (double)map[i];
@@ -29,8 +30,9 @@ static void compare_with_truth(double *rmse, double *correlation, const float *m
         truth2 += b * b;
         cross += a * b;
     }
-    *rmse = sqrt(difference / (double)count);
-    *correlation = map2 > 0 && truth2 > 0 ? cross / sqrt(map2 * truth2) : (double)NAN;
+    value[PTIE_RMSE_RAD] = sqrt(difference / (double)count);
+    value[PTIE_SIGNAL_KEPT] = truth2 > 0 ? cross / truth2 : (double)NAN;
+    value[PTIE_CORRELATION] = map2 > 0 && truth2 > 0 ? cross / sqrt(map2 * truth2) : (double)NAN;
 }
 
 ptie_status ptie_run_measure(double *value, const float *map, const float *truth, const uint8_t *labels,
@@ -46,8 +48,7 @@ ptie_status ptie_run_measure(double *value, const float *map, const float *truth
         value[PTIE_CNR] = flow.cnr;
     }
     if (truth)
-        compare_with_truth(&value[PTIE_RMSE_RAD], &value[PTIE_CORRELATION], map, truth,
-                           (size_t)width_px * (size_t)height_px);
+        compare_with_truth(value, map, truth, (size_t)width_px * (size_t)height_px);
     return PTIE_OK;
 }
 
@@ -77,5 +78,6 @@ ptie_run_row ptie_run_summarise(const double *values, int64_t frames) {
                           .bns = over_frames(values + PTIE_BNS, frames),
                           .cnr = over_frames(values + PTIE_CNR, frames),
                           .rmse_rad = over_frames(values + PTIE_RMSE_RAD, frames),
-                          .correlation = over_frames(values + PTIE_CORRELATION, frames)};
+                          .correlation = over_frames(values + PTIE_CORRELATION, frames),
+                          .signal_kept = over_frames(values + PTIE_SIGNAL_KEPT, frames)};
 }

@@ -7,9 +7,10 @@
 
 #include "base/status.h"
 
-enum { PTIE_MGM, PTIE_SBR, PTIE_BNS, PTIE_CNR, PTIE_RMSE_RAD, PTIE_CORRELATION, PTIE_RUN_METRICS };
+enum { PTIE_MGM, PTIE_SBR, PTIE_BNS, PTIE_CNR, PTIE_RMSE_RAD, PTIE_CORRELATION,
+       PTIE_SIGNAL_KEPT, PTIE_RUN_METRICS };
 
-/* "mgm", "sbr", "bns", "cnr", "rmse_rad", "correlation". */
+/* "mgm", "sbr", "bns", "cnr", "rmse_rad", "correlation", "signal_kept". */
 const char *ptie_run_metric_name(int which);
 
 /* One map against its regions and against the truth, as far as `labels` and `truth` are not NULL; the rest is

@@ -226,7 +226,7 @@ static ptie_status measure_frames(run *r) {
 /* values may be NULL: nothing was measured. */
 static ptie_run_row row_of(const double *values, int64_t frames) {
     const ptie_stat none = {(double)NAN, (double)NAN};
-    return values ? ptie_run_summarise(values, frames) : (ptie_run_row){none, none, none, none, none, none};
+    return values ? ptie_run_summarise(values, frames) : (ptie_run_row){none, none, none, none, none, none, none};
 }
 
 static ptie_run_summary summarise(const run *r) {

@@ -254,7 +254,8 @@ reconstruct
   
   The table has mean and standard deviation over frames: MGM, mean gradient in
   the jet; SBR, mean jet / mean background; BNS, deviation of the background;
-  CNR, contrast over noise; with --truth also RMSE and correlation.
+  CNR, contrast over noise; with --truth also RMSE, correlation,
+  and the share of the signal kept.
 
 denoise
   $ ptie help denoise
@@ -339,7 +340,8 @@ run
   
   The table has mean and standard deviation over frames: MGM, mean gradient in
   the jet; SBR, mean jet / mean background; BNS, deviation of the background;
-  CNR, contrast over noise; with --truth also RMSE and correlation.
+  CNR, contrast over noise; with --truth also RMSE, correlation,
+  and the share of the signal kept.
 
 metrics
   $ ptie help metrics
@@ -381,6 +383,7 @@ metrics
   BNS  standard deviation in the background
   CNR  |mean jet - mean background| / sqrt(var jet + var background)
   RMSE, correlation: against the truth, means taken out
+  signal kept: slope of the map on the truth; 1 = all of it, 0 = erased
 
 info
   $ ptie help info

@@ -68,6 +68,7 @@ static void differences_by_hand(void **state) {
     assert_near(c.mae, 0.25, 1e-15);
     assert_near(c.rmse, sqrt(0.125), 1e-15);
     assert_near(c.psnr_db, 10 * log10(8), 1e-13);
+    assert_near(c.signal_kept, 0.5, 1e-15);
     assert_near(c.correlation, 0.5, 1e-15); /* covariance 1/4, variances 1/2 */
     assert_true(isnan(c.ssim));             /* no window fits */
 }
@@ -82,9 +83,26 @@ static void equal_images_are_perfect(void **state) {
     assert_true(c.mae == 0 && c.rmse == 0);
     assert_near(c.ssim, 1, 1e-12);
     assert_near(c.correlation, 1, 1e-12);
+    assert_near(c.signal_kept, 1, 1e-12);
     for (int i = 0; i < 20 * 15; i++) b[i] = 3 - 2 * a[i];
     assert_ok(ptie_compare(&c, a, b, 20, 15, 1));
     assert_near(c.correlation, -1, 1e-6); /* b is rounded to float */
+    assert_near(c.signal_kept, -0.5, 1e-6);
+}
+
+/* Half of a flow of two equal waves erased, an offset, and noise that is orthogonal to both. */
+static void what_is_erased_is_missing_from_the_signal(void **state) {
+    (void)state;
+    enum { N = 64 };
+    float estimate[N], truth[N];
+    for (int i = 0; i < N; i++) {
+        const double turn = 6.283185307179586 * i / N;
+        truth[i] = (float)(sin(3 * turn) + cos(5 * turn));
+        estimate[i] = (float)(sin(3 * turn) + 7 + 2 * cos(11 * turn));
+    }
+    ptie_comparison c;
+    assert_ok(ptie_compare(&c, estimate, truth, N / 4, 4, 1));
+    assert_near(c.signal_kept, 0.5, 2e-7); /* values up to 10 are rounded to 2^-21 of 1 at worst */
 }
 
 /* Two constants: SSIM is its luminance term (2 a b + c1) / (a^2 + b^2 + c1). */
@@ -128,6 +146,7 @@ int main(void) {
         cmocka_unit_test(metrics_agree_with_numpy_and_scipy),
         cmocka_unit_test(differences_by_hand),
         cmocka_unit_test(equal_images_are_perfect),
+        cmocka_unit_test(what_is_erased_is_missing_from_the_signal),
         cmocka_unit_test(ssim_of_constants_is_luminance),
         cmocka_unit_test(the_range_scales_psnr_and_ssim),
         cmocka_unit_test(values_that_are_not_finite_are_named),

@@ -117,6 +117,7 @@ static void a_pair_gives_back_the_phase_on_any_number_of_threads(void **state) {
        = 9e-8 rad for N = 48.  Times 10 for the transforms' own rounding. */
     assert_near(summary.phase.rmse_rad.mean, 0, 1e-6);
     assert_true(summary.phase.correlation.mean > 0.999999);
+    assert_near(summary.phase.signal_kept.mean, 1, 1e-5); /* 1e-6 rad of error over 0.2 rad rms */
     assert_near(summary.truth.mgm.mean, summary.phase.mgm.mean, 2e-6); /* two values differ, each by 1e-6 */
     assert_true(isnan(summary.denoised.mgm.mean));
     read_phase(one, s.output);
