@@ -24,8 +24,8 @@ static void plan_transforms(ptie_fft *fft, float *image, float *spectrum) {
         fft->inverse = fftwf_plan_dft_c2r_2d(h, w, complex_spectrum, image, flags);
         break;
     case PTIE_FFT_MIRROR:
-        fft->forward = fftwf_plan_r2r_2d(h, w, image, spectrum, FFTW_REDFT10, FFTW_REDFT10, flags);
-        fft->inverse = fftwf_plan_r2r_2d(h, w, spectrum, image, FFTW_REDFT01, FFTW_REDFT01, flags);
+        fft->forward = fftwf_plan_dft_r2c_2d(h, w, spectrum, complex_spectrum, flags);
+        fft->inverse = fftwf_plan_dft_c2r_2d(h, w, complex_spectrum, spectrum, flags);
         break;
     case PTIE_FFT_COMPLEX:
         fft->forward =
@@ -59,9 +59,9 @@ ptie_status ptie_fft_create(ptie_fft **out, ptie_fft_kind kind, int32_t width, i
     fft->kind = kind;
     fft->width = width;
     fft->height = height;
-    /* FFTW's DCT-II and DCT-III are twice the textbook's, per axis. */
-    fft->scale = 1.0 / ((double)width * height * (kind == PTIE_FFT_MIRROR ? 4 : 1));
+    fft->scale = 1.0 / ((double)width * height);
     ptie_status status = make_plans(fft);
+    if (status == PTIE_OK && kind == PTIE_FFT_MIRROR) status = ptie_mirror_prepare(fft);
     if (status != PTIE_OK) {
         ptie_fft_free(fft);
         return status;
@@ -76,6 +76,8 @@ void ptie_fft_free(ptie_fft *fft) {
     if (fft->forward) fftwf_destroy_plan(fft->forward);
     if (fft->inverse) fftwf_destroy_plan(fft->inverse);
     pthread_mutex_unlock(&planner);
+    ptie_free(fft->turns_x);
+    ptie_free(fft->turns_y);
     ptie_free(fft);
 }
 
@@ -87,7 +89,13 @@ int32_t ptie_fft_columns(const ptie_fft *fft) {
     return fft->kind == PTIE_FFT_REAL ? fft->width / 2 + 1 : fft->width;
 }
 
+size_t ptie_fft_entry_floats(const ptie_fft *fft) {
+    return fft->kind == PTIE_FFT_MIRROR ? 1 : 2;
+}
+
 size_t ptie_fft_spectrum_floats(const ptie_fft *fft) {
+    if (fft->kind == PTIE_FFT_MIRROR) /* work space of mirror.c behind the entries */
+        return 2 * (size_t)(fft->width / 2 + 1) * (size_t)fft->height;
     return ptie_fft_filter_floats(fft) * ptie_fft_entry_floats(fft);
 }
 
@@ -102,7 +110,7 @@ void ptie_fft_forward(const ptie_fft *fft, float *spectrum, float *image) {
     case PTIE_FFT_REAL:
         fftwf_execute_dft_r2c(fft->forward, image, (fftwf_complex *)(void *)spectrum);
         break;
-    case PTIE_FFT_MIRROR: fftwf_execute_r2r(fft->forward, image, spectrum); break;
+    case PTIE_FFT_MIRROR: ptie_mirror_forward(fft, spectrum, image); break;
     case PTIE_FFT_COMPLEX:
         fftwf_execute_dft(fft->forward, (fftwf_complex *)(void *)image,
                           (fftwf_complex *)(void *)spectrum);
@@ -116,7 +124,7 @@ void ptie_fft_inverse(const ptie_fft *fft, float *image, float *spectrum) {
     case PTIE_FFT_REAL:
         fftwf_execute_dft_c2r(fft->inverse, (fftwf_complex *)(void *)spectrum, image);
         break;
-    case PTIE_FFT_MIRROR: fftwf_execute_r2r(fft->inverse, spectrum, image); break;
+    case PTIE_FFT_MIRROR: ptie_mirror_inverse(fft, image, spectrum); break;
     case PTIE_FFT_COMPLEX:
         fftwf_execute_dft(fft->inverse, (fftwf_complex *)(void *)spectrum,
                           (fftwf_complex *)(void *)image);

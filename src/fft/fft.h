@@ -10,7 +10,8 @@
 
 typedef enum ptie_fft_kind {
     PTIE_FFT_REAL,   /* spectrum: height x (width/2 + 1) complex */
-    PTIE_FFT_MIRROR, /* spectrum: height x width real; DCT-II forward, DCT-III back */
+    PTIE_FFT_MIRROR, /* spectrum: height x width real; DCT-II forward (twice the textbook's per axis,
+                        as FFTW defines it), DCT-III back */
     PTIE_FFT_COMPLEX /* spectrum: height x width complex; the image is complex too */
 } ptie_fft_kind;
 
@@ -20,7 +21,10 @@ ptie_status ptie_fft_create(ptie_fft **out, ptie_fft_kind kind, int32_t width, i
 void ptie_fft_free(ptie_fft *fft);
 
 size_t ptie_fft_image_floats(const ptie_fft *fft);
+/* Of the buffer, at least as many as the entries take. */
 size_t ptie_fft_spectrum_floats(const ptie_fft *fft);
+/* Per entry: 2 complex, 1 real. */
+size_t ptie_fft_entry_floats(const ptie_fft *fft);
 int32_t ptie_fft_columns(const ptie_fft *fft); /* spectrum columns: width/2 + 1 or width */
 
 /* inverse(forward(x)) = x: the inverse divides by the number of points.  Inputs are destroyed. */

@@ -12,11 +12,12 @@ struct ptie_fft {
     int32_t width, height;
     double scale; /* of the inverse */
     fftwf_plan forward, inverse;
+    float *turns_x, *turns_y; /* of the mirrored kind: (cos, sin) of pi k / 2 n; mirror.c */
 };
 
-/* Floats per spectrum entry: complex or real. */
-static inline size_t ptie_fft_entry_floats(const ptie_fft *fft) {
-    return fft->kind == PTIE_FFT_MIRROR ? 1 : 2;
-}
+/* The mirrored kind, over the plans of a real transform in place. */
+ptie_status ptie_mirror_prepare(ptie_fft *fft);
+void ptie_mirror_forward(const ptie_fft *fft, float *spectrum, float *image);
+void ptie_mirror_inverse(const ptie_fft *fft, float *image, float *spectrum);
 
 #endif

@@ -48,7 +48,7 @@ static void wave_in_focus(const ptie_optics *optics, const float *phase_rad, con
 static void propagate_part(const ptie_optics *optics, const float *u, const float *v, float sign,
                            const ptie_optics_work *work) {
     const size_t filter_floats = ptie_fft_filter_floats(optics->fft);
-    const size_t parts = ptie_fft_spectrum_floats(optics->fft) / filter_floats;
+    const size_t parts = ptie_fft_entry_floats(optics->fft);
     for (size_t i = 0; i < filter_floats; i++) {
         const float re = optics->h_re[i], im = sign * optics->h_im[i];
         for (size_t j = i * parts; j < (i + 1) * parts; j++)
