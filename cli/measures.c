@@ -8,21 +8,22 @@
 #include "table.h"
 
 const char *measure_name(int which) {
-    static const char *const names[MEASURES] = {"MGM (rad/px)", "SBR",         "BNS (rad)",  "CNR",
-                                                "RMSE (rad)",   "correlation", "signal kept"};
+    static const char *const names[MEASURES] = {"MGM (rad/px)", "SBR",        "BNS (rad)",
+                                                "CNR",          "RMSE (rad)", "correlation",
+                                                "signal kept",  "residual"};
     return names[which];
 }
 
 const char *measure_key(int which) {
-    static const char *const keys[MEASURES] = {"mgm",      "sbr",         "bns",        "cnr",
-                                               "rmse_rad", "correlation", "signal_kept"};
+    static const char *const keys[MEASURES] = {
+        "mgm", "sbr", "bns", "cnr", "rmse_rad", "correlation", "signal_kept", "residual"};
     return keys[which];
 }
 
 ptie_stat *measure_in(ptie_run_row *row, int which) {
-    ptie_stat *const fields[MEASURES] = {&row->mgm,        &row->sbr,      &row->bns,
-                                         &row->cnr,        &row->rmse_rad, &row->correlation,
-                                         &row->signal_kept};
+    ptie_stat *const fields[MEASURES] = {&row->mgm,         &row->sbr,      &row->bns,
+                                         &row->cnr,         &row->rmse_rad, &row->correlation,
+                                         &row->signal_kept, &row->residual};
     return fields[which];
 }
 

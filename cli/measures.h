@@ -5,7 +5,7 @@
 
 #include <ptie/run.h>
 
-enum { MGM, SBR, BNS, CNR, RMSE, CORRELATION, SIGNAL_KEPT, MEASURES };
+enum { MGM, SBR, BNS, CNR, RMSE, CORRELATION, SIGNAL_KEPT, RESIDUAL, MEASURES };
 
 /* For people, "MGM (rad/px)", and for programs, "mgm". */
 const char *measure_name(int which);

@@ -31,7 +31,8 @@ static const char notes[] =
     "The table has mean and standard deviation over frames: MGM, mean gradient in\n"
     "the jet; SBR, mean jet / mean background; BNS, deviation of the background;\n"
     "CNR, contrast over noise; with --truth also RMSE, correlation,\n"
-    "and the share of the signal kept.\n";
+    "and the share of the signal kept; residual, the map sent back through the\n"
+    "forward model against the planes: 0 keeps all noise, 1 is an empty map.\n";
 
 typedef struct settings {
     compute_options compute;

@@ -139,8 +139,9 @@ static ptie_status measure_one(series_set *set, series *s, int64_t t) {
     if (status == PTIE_OK && set->truth && s != set->truth)
         status = compare_with_truth(set, &truth, t);
     if (status != PTIE_OK) return status;
-    const double found[MEASURES] = {flow.mgm,   flow.sbr,          flow.bns,         flow.cnr,
-                                    truth.rmse, truth.correlation, truth.signal_kept};
+    const double found[MEASURES] = {flow.mgm,          flow.sbr,   flow.bns,
+                                    flow.cnr,          truth.rmse, truth.correlation,
+                                    truth.signal_kept, (double)NAN}; /* no planes */
     for (int k = 0; k < MEASURES; k++) s->value[k][t] = found[k];
     return PTIE_OK;
 }

@@ -23,6 +23,14 @@ PTIE_API PTIE_NODISCARD ptie_status ptie_compare(ptie_comparison *out, const flo
                                                  const float *truth, int32_t width_px,
                                                  int32_t height_px, double range);
 
+/* Re-projection residual (Q11): what a forward model makes of a map against what was measured (the axial
+   derivative, or i_plus - i_minus), both with their means taken out, relative to the measured one.  0 for an exact
+   inverse, noise included; the noise's share of the measurement for the truth; 1 for an empty map.  NaN when
+   nothing was measured.  Errors: PTIE_EINVAL, PTIE_ENUMERIC. */
+PTIE_API PTIE_NODISCARD ptie_status ptie_residual(double *out, const float *reprojected,
+                                                  const float *measured, int32_t width_px,
+                                                  int32_t height_px);
+
 typedef struct ptie_rect {
     int32_t x_px, y_px, width_px, height_px; /* top-left corner and size */
 } ptie_rect;

@@ -57,6 +57,7 @@ typedef struct ptie_stat { double mean, std; } ptie_stat;
 typedef struct ptie_run_row {    /* one kind of map: the TIE phase, or the denoised phase */
     ptie_stat mgm, sbr, bns, cnr;
     ptie_stat rmse_rad, correlation, signal_kept; /* against truth, both maps with mean 0; NaN without */
+    ptie_stat residual; /* of the map sent back to the planes (docs/math.md Q11) */
 } ptie_run_row;
 
 typedef struct ptie_run_summary {

@@ -22,6 +22,15 @@ ptie_status ptie_compare(ptie_comparison *out, const float *estimate, const floa
     return ptie_metrics_compare(out, estimate, truth, width_px, height_px, range);
 }
 
+ptie_status ptie_residual(double *out, const float *reprojected, const float *measured,
+                          int32_t width_px, int32_t height_px) {
+    static const char where[] = "ptie_residual";
+    PTIE_TRY(ptie_check_pointer(out, where, "out"));
+    PTIE_TRY(check_image(reprojected, "reprojected", width_px, height_px, where));
+    PTIE_TRY(check_image(measured, "measured", width_px, height_px, where));
+    return ptie_metrics_residual(out, reprojected, measured, width_px, height_px);
+}
+
 ptie_status ptie_regions_from_rects(uint8_t *labels, int32_t width_px, int32_t height_px,
                                     ptie_rect jet, ptie_rect background) {
     PTIE_TRY(check_image(labels, "labels", width_px, height_px, "ptie_regions_from_rects"));

@@ -50,3 +50,18 @@ ptie_status ptie_metrics_compare(ptie_comparison *out, const float *estimate, co
     };
     return PTIE_OK;
 }
+
+ptie_status ptie_metrics_residual(double *out, const float *reprojected, const float *measured,
+                                  int32_t width, int32_t height) {
+    PTIE_TRY(ptie_image_finite(reprojected, width, height, "reprojected"));
+    PTIE_TRY(ptie_image_finite(measured, width, height, "measured"));
+    const size_t count = (size_t)width * (size_t)height;
+    const double mean_r = mean(reprojected, count), mean_m = mean(measured, count);
+    double off = 0, all = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double m = (double)measured[i] - mean_m, d = (double)reprojected[i] - mean_r - m;
+        off += d * d, all += m * m;
+    }
+    *out = all > 0 ? sqrt(off / all) : (double)NAN;
+    return PTIE_OK;
+}

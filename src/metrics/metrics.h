@@ -13,6 +13,9 @@ ptie_status ptie_metrics_compare(ptie_comparison *out, const float *estimate, co
 ptie_status ptie_metrics_ssim(double *out, const float *a, const float *b, int32_t width,
                               int32_t height, double range);
 
+ptie_status ptie_metrics_residual(double *out, const float *reprojected, const float *measured,
+                                  int32_t width, int32_t height);
+
 ptie_status ptie_metrics_label_rects(uint8_t *labels, int32_t width, int32_t height, ptie_rect jet,
                                      ptie_rect background);
 ptie_status ptie_metrics_propose(uint8_t *labels, const float *map, int32_t width, int32_t height);

@@ -7,7 +7,7 @@
 #include "metrics/metrics.h"
 
 static const char *const names[PTIE_RUN_METRICS] = {"mgm", "sbr", "bns", "cnr", "rmse_rad", "correlation",
-                                                   "signal_kept"};
+                                                   "signal_kept", "residual"};
 
 const char *ptie_run_metric_name(int which) {
     return names[which];
@@ -37,7 +37,7 @@ static void compare_with_truth(double *value, const float *map, const float *tru
 
 ptie_status ptie_run_measure(double *value, const float *map, const float *truth, const uint8_t *labels,
                              int32_t width_px, int32_t height_px) {
-    for (int i = 0; i < PTIE_RUN_METRICS; i++) value[i] = (double)NAN;
+    for (int i = 0; i < PTIE_RESIDUAL; i++) value[i] = (double)NAN;
     PTIE_TRY(ptie_image_finite(map, width_px, height_px, "map"));
     if (labels) {
         ptie_flow_metrics flow;
@@ -79,5 +79,6 @@ ptie_run_row ptie_run_summarise(const double *values, int64_t frames) {
                           .cnr = over_frames(values + PTIE_CNR, frames),
                           .rmse_rad = over_frames(values + PTIE_RMSE_RAD, frames),
                           .correlation = over_frames(values + PTIE_CORRELATION, frames),
-                          .signal_kept = over_frames(values + PTIE_SIGNAL_KEPT, frames)};
+                          .signal_kept = over_frames(values + PTIE_SIGNAL_KEPT, frames),
+                          .residual = over_frames(values + PTIE_RESIDUAL, frames)};
 }

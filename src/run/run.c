@@ -11,6 +11,7 @@
 #include "io/recording.h"
 #include "metrics/metrics.h"
 #include "run/output.h"
+#include "run/reprojection.h"
 #include "run/source.h"
 #include "run/worker.h"
 
@@ -20,6 +21,7 @@ typedef struct run {
     ptie_source *source;
     ptie_recording *truth; /* or NULL */
     ptie_frame_plan *plan;
+    ptie_reprojection *reprojection;
     ptie_h5 *output;
     ptie_output_file csv; /* open when the metrics go to a table too */
     ptie_source_shape shape;
@@ -117,6 +119,8 @@ static ptie_status prepare(run *r) {
     PTIE_TRY(open_truth(r));
     PTIE_TRY(ptie_frame_plan_create(&r->plan, r->engine, p->rig, p->model, r->shape.width_px,
                                     r->shape.height_px));
+    PTIE_TRY(ptie_reprojection_create(&r->reprojection, p->rig, r->shape.width_px, r->shape.height_px,
+                                      ptie_pool_threads(r->engine->pool)));
     PTIE_TRY(allocate(r));
     r->has_regions = regions_given(p);
     if (r->has_regions) /* before the work: they may lie outside the frame */
@@ -138,10 +142,38 @@ static float *frame_of(float *block, const run *r, size_t i) {
     return block ? block + i * r->pixels : NULL;
 }
 
+/* What the planes say of the maps of frame i, while they are at hand. */
+static ptie_status compare_with_planes(run *r, size_t i, int32_t worker) {
+    const float *const blocks[] = {r->phase, r->denoised, r->true_phase};
+    double *const metrics[] = {r->phase_metrics, r->denoised_metrics, r->truth_metrics}, residual[3];
+    const float *maps[3];
+    size_t count = 0;
+    for (int k = 0; k < 3; k++)
+        if (blocks[k]) maps[count++] = blocks[k] + i * r->pixels;
+    PTIE_TRY(ptie_reprojection_measure(r->reprojection, worker, residual, maps, count, frame_of(r->plus, r, i),
+                                       frame_of(r->zero, r, i), frame_of(r->minus, r, i)));
+    count = 0;
+    for (int k = 0; k < 3; k++)
+        if (blocks[k]) metrics[k][((size_t)r->done + i) * PTIE_RUN_METRICS + PTIE_RESIDUAL] = residual[count++];
+    return PTIE_OK;
+}
+
 static ptie_status solve_task(void *context, size_t i, int32_t worker) {
     run *r = context;
-    return ptie_frame_solve(r->plan, worker, frame_of(r->phase, r, i), frame_of(r->denoised, r, i),
-                            frame_of(r->plus, r, i), frame_of(r->zero, r, i), frame_of(r->minus, r, i));
+    PTIE_TRY(ptie_frame_solve(r->plan, worker, frame_of(r->phase, r, i), frame_of(r->denoised, r, i),
+                              frame_of(r->plus, r, i), frame_of(r->zero, r, i), frame_of(r->minus, r, i)));
+    return compare_with_planes(r, i, worker);
+}
+
+static ptie_status read_truth(run *r, int64_t first, size_t count) {
+    if (!r->truth) return PTIE_OK;
+    const ptie_recording_info *info = ptie_io_info(r->truth);
+    for (size_t i = 0; i < count; i++) {
+        PTIE_TRY(ptie_io_read(r->truth, recorded_frame(r, first + (int64_t)i), r->true_raw));
+        ptie_bin(frame_of(r->true_phase, r, i), r->true_raw, info->width_px, info->height_px,
+                 r->params->rig->binning);
+    }
+    return PTIE_OK;
 }
 
 static void add_to_mean(run *r, size_t count) {
@@ -152,8 +184,10 @@ static void add_to_mean(run *r, size_t count) {
 
 /* First pass: solve, denoise and write every frame. */
 static ptie_status solve_frames(run *r, ptie_progress progress) {
-    for (int64_t first = 0; first < r->frames; first += r->block) {
+    for (r->done = 0; r->done < r->frames; r->done += r->block) {
+        const int64_t first = r->done;
         size_t count = (size_t)(r->frames - first < r->block ? r->frames - first : r->block);
+        PTIE_TRY(read_truth(r, first, count));
         for (size_t i = 0; i < count; i++)
             PTIE_TRY(ptie_source_read(r->source, recorded_frame(r, first + (int64_t)i),
                                       frame_of(r->plus, r, i), frame_of(r->zero, r, i),
@@ -191,17 +225,6 @@ static ptie_status measure_task(void *context, size_t i, int32_t worker) {
     return ptie_run_measure(r->denoised_metrics + row, frame_of(r->denoised, r, i), truth, labels, width, height);
 }
 
-static ptie_status read_truth(run *r, int64_t first, size_t count) {
-    if (!r->truth) return PTIE_OK;
-    const ptie_recording_info *info = ptie_io_info(r->truth);
-    for (size_t i = 0; i < count; i++) {
-        PTIE_TRY(ptie_io_read(r->truth, recorded_frame(r, first + (int64_t)i), r->true_raw));
-        ptie_bin(frame_of(r->true_phase, r, i), r->true_raw, info->width_px, info->height_px,
-                 r->params->rig->binning);
-    }
-    return PTIE_OK;
-}
-
 /* Second pass: the metrics of every frame. */
 static ptie_status measure_frames(run *r) {
     if (!r->has_regions) PTIE_TRY(propose_regions(r));
@@ -226,7 +249,7 @@ static ptie_status measure_frames(run *r) {
 /* values may be NULL: nothing was measured. */
 static ptie_run_row row_of(const double *values, int64_t frames) {
     const ptie_stat none = {(double)NAN, (double)NAN};
-    return values ? ptie_run_summarise(values, frames) : (ptie_run_row){none, none, none, none, none, none, none};
+    return values ? ptie_run_summarise(values, frames) : (ptie_run_row){none, none, none, none, none, none, none, none};
 }
 
 static ptie_run_summary summarise(const run *r) {
@@ -249,6 +272,7 @@ static void release(run *r) {
     ptie_h5_discard(r->output);
     ptie_output_discard(&r->csv);
     ptie_frame_plan_free(r->plan);
+    ptie_reprojection_free(r->reprojection);
     ptie_io_close(r->truth);
     ptie_source_close(r->source);
 }

@@ -255,7 +255,8 @@ reconstruct
   The table has mean and standard deviation over frames: MGM, mean gradient in
   the jet; SBR, mean jet / mean background; BNS, deviation of the background;
   CNR, contrast over noise; with --truth also RMSE, correlation,
-  and the share of the signal kept.
+  and the share of the signal kept; residual, the map sent back through the
+  forward model against the planes: 0 keeps all noise, 1 is an empty map.
 
 denoise
   $ ptie help denoise
@@ -341,7 +342,8 @@ run
   The table has mean and standard deviation over frames: MGM, mean gradient in
   the jet; SBR, mean jet / mean background; BNS, deviation of the background;
   CNR, contrast over noise; with --truth also RMSE, correlation,
-  and the share of the signal kept.
+  and the share of the signal kept; residual, the map sent back through the
+  forward model against the planes: 0 keeps all noise, 1 is an empty map.
 
 metrics
   $ ptie help metrics

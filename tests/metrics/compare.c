@@ -105,6 +105,31 @@ static void what_is_erased_is_missing_from_the_signal(void **state) {
     assert_near(c.signal_kept, 0.5, 2e-7); /* values up to 10 are rounded to 2^-21 of 1 at worst */
 }
 
+/* Waves of equal size: the inverse itself, twice it, an empty map, and the truth under noise. */
+static void residuals_by_hand(void **state) {
+    (void)state;
+    enum { N = 64 };
+    float measured[N], wave[N], twice[N], empty[N] = {0};
+    double found;
+    for (int i = 0; i < N; i++) {
+        const double turn = 6.283185307179586 * i / N;
+        wave[i] = (float)(sin(3 * turn));
+        measured[i] = (float)(sin(3 * turn) + cos(5 * turn) + 0.5); /* the mean says nothing */
+        twice[i] = 2 * measured[i];
+    }
+    assert_ok(ptie_residual(&found, measured, measured, N / 4, 4));
+    assert_near(found, 0, 1e-15);
+    assert_ok(ptie_residual(&found, twice, measured, N / 4, 4));
+    assert_near(found, 1, 1e-12);
+    assert_ok(ptie_residual(&found, empty, measured, N / 4, 4));
+    assert_near(found, 1, 1e-12);
+    assert_ok(ptie_residual(&found, wave, measured, N / 4, 4));
+    assert_near(found, sqrt(0.5), 1e-7); /* values are rounded to f32 */
+    assert_ok(ptie_residual(&found, wave, empty, N / 4, 4));
+    assert_true(isnan(found));
+    assert_fails(ptie_residual(&found, wave, NULL, 1, 1), PTIE_EINVAL, "measured is missing");
+}
+
 /* Two constants: SSIM is its luminance term (2 a b + c1) / (a^2 + b^2 + c1). */
 static void ssim_of_constants_is_luminance(void **state) {
     (void)state;
@@ -147,6 +172,7 @@ int main(void) {
         cmocka_unit_test(differences_by_hand),
         cmocka_unit_test(equal_images_are_perfect),
         cmocka_unit_test(what_is_erased_is_missing_from_the_signal),
+        cmocka_unit_test(residuals_by_hand),
         cmocka_unit_test(ssim_of_constants_is_luminance),
         cmocka_unit_test(the_range_scales_psnr_and_ssim),
         cmocka_unit_test(values_that_are_not_finite_are_named),

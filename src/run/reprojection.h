@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Maps sent back through the forward model and compared with what was measured, docs/math.md (Q11).
+ */
+#ifndef PTIE_RUN_REPROJECTION_H
+#define PTIE_RUN_REPROJECTION_H
+
+#include <ptie/run.h>
+
+#include "base/status.h"
+
+typedef struct ptie_reprojection ptie_reprojection;
+
+/* For frames of this size (after binning), measured by at most `workers` threads at a time. */
+ptie_status ptie_reprojection_create(ptie_reprojection **out, const ptie_rig *rig, int32_t width_px,
+                                     int32_t height_px, int32_t workers);
+void ptie_reprojection_free(ptie_reprojection *reprojection); /* NULL is fine */
+
+/* residual (out): one number per map.  Planes as in ptie_frame_solve. */
+ptie_status ptie_reprojection_measure(const ptie_reprojection *reprojection, int32_t worker,
+                                      double *residual, const float *const *maps, size_t count,
+                                      const float *i_plus, const float *i_zero,
+                                      const float *i_minus);
+
+#endif
