@@ -43,7 +43,8 @@ void print_bench_table(const bench_results *b, bool markdown) {
         if (first) table_set(&t, t.rows, NAME, markdown ? "**%s**" : "%s", b->results[i].group);
         set_result(&t, t.rows, &b->results[i]);
     }
-    printf("ptie %s, commit %s, %s\n", ptie_version(), b->machine.commit, b->machine.compiler);
+    printf("ptie %s, commit %s, %s%s", ptie_version(), b->machine.commit, b->machine.compiler,
+           markdown ? "; " : "\n");
     printf("%s, %s, %d thread%s, %g s per measurement\n\n", b->machine.processor, b->level,
            b->threads, b->threads > 1 ? "s" : "", b->seconds);
     if (markdown)
