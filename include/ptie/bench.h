@@ -3,10 +3,10 @@
  * samples, solving, and the whole pipeline.  docs/bench.md says how to read the numbers.
  *
  * Work is repeated until one sample takes about a twentieth of the time that a measurement may
- * take; samples are taken until that time has passed.  Where the operations are known, their rate
- * is set against the rate of multiply-adds that the processor reaches at best, which is measured
- * after every sample on as many threads: machines that are shared or hot change from one second to
- * the next.
+ * take; samples are taken until that time has passed (three times as long, where there are not
+ * three yet). Where the operations are known, their rate is set against the rate of multiply-adds
+ * that the processor reaches at best, which is measured after every sample on as many threads:
+ * machines that are shared or hot change from one second to the next.
  */
 #ifndef PTIE_BENCH_H
 #define PTIE_BENCH_H

@@ -60,6 +60,10 @@ ptie_status ptie_bench_measure(ptie_bench *bench, const ptie_bench_case *measure
 /* The same for a value that needs no timing; NaN if it could not be found out. */
 ptie_status ptie_bench_note(ptie_bench *bench, const char *name, const char *unit, double value);
 
+/* No place for more, or the time has passed; a little longer where there are not three yet. */
+bool ptie_bench_enough(const ptie_bench *bench, const ptie_bench_samples *samples,
+                       double elapsed_s);
+
 typedef struct ptie_bench_spread {
     double median, low, high;
 } ptie_bench_spread;

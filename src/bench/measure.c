@@ -19,6 +19,13 @@ int32_t ptie_bench_threads(const ptie_bench *bench, ptie_bench_mode mode) {
     return mode == PTIE_BENCH_ONE ? 1 : ptie_pool_threads(bench->engine->pool);
 }
 
+bool ptie_bench_enough(const ptie_bench *bench, const ptie_bench_samples *samples,
+                       double elapsed_s) {
+    enum { FEW = 3 };
+    const double limit_s = bench->seconds * (samples->count < FEW ? FEW : 1);
+    return samples->count == PTIE_BENCH_SAMPLES || (samples->count > 0 && elapsed_s >= limit_s);
+}
+
 static int ascending(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
@@ -116,8 +123,7 @@ static ptie_status read_peak(ptie_bench *bench, ptie_bench_mode mode, double *gf
 
 /* Samples. */
 
-/* Samples until the time has passed or there is no place for more; at least one.  A reading of the
-   peak follows each. */
+/* A reading of the peak follows each sample. */
 static ptie_status take_samples(ptie_bench *bench, const ptie_bench_case *measured,
                                 ptie_bench_samples *samples) {
     const double start_s = ptie_now_s();
@@ -129,7 +135,7 @@ static ptie_status take_samples(ptie_bench *bench, const ptie_bench_case *measur
         if (measured->flops > 0) PTIE_TRY(read_peak(bench, measured->mode, &peak));
         samples->rate[samples->count] = rate;
         samples->share[samples->count++] = 1e-9 * measured->flops * rate / peak;
-    } while (samples->count < PTIE_BENCH_SAMPLES && ptie_now_s() - start_s < bench->seconds);
+    } while (!ptie_bench_enough(bench, samples, ptie_now_s() - start_s));
     return PTIE_OK;
 }
 

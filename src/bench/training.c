@@ -68,7 +68,8 @@ typedef struct training {
     ptie_model *model;
     const ptie_dataset *dataset;
     ptie_bench_samples *samples;
-    double until_s, last_s; /* clock */
+    const ptie_bench *bench;
+    double start_s, last_s; /* clock */
     uint64_t done;          /* samples seen at last_s */
 } training;
 
@@ -82,14 +83,15 @@ static int watch(void *user, uint64_t done, uint64_t total, const char *note) {
         samples->rate[samples->count++] = (double)(done - t->done) / (now_s - t->last_s);
     t->done = done;
     t->last_s = now_s;
-    return samples->count == PTIE_BENCH_SAMPLES || (samples->count > 0 && now_s > t->until_s);
+    return ptie_bench_enough(t->bench, samples, now_s - t->start_s);
 }
 
 static ptie_status train(ptie_bench *bench, const ptie_bench_case *measured,
                          ptie_bench_samples *samples) {
     training *t = measured->context;
     t->samples = samples;
-    t->until_s = ptie_now_s() + bench->seconds;
+    t->bench = bench;
+    t->start_s = ptie_now_s();
     ptie_train_params params;
     ptie_train_params_init(&params);
     ptie_folder folder = {{0}};
