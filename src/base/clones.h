@@ -5,9 +5,10 @@
 #ifndef PTIE_BASE_CLONES_H
 #define PTIE_BASE_CLONES_H
 
-/* Sanitisers are not up yet when the loader asks which clone to take. */
-#if defined(__x86_64__) && defined(__ELF__) && !defined(__SANITIZE_ADDRESS__) &&                   \
-    !defined(__SANITIZE_THREAD__)
+/* Sanitisers are not up yet when the loader asks which clone to take; clang (14) gives the clones of
+   static functions names that collide. */
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__ELF__) &&         \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define PTIE_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define PTIE_CLONES
