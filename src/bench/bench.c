@@ -13,8 +13,8 @@
 typedef struct group {
     const char *name;
     ptie_status (*run)(ptie_bench *bench);
-    int32_t measurements;   /* how many; */
-    int32_t (*count)(void); /* or who knows */
+    int32_t measurements;   /* so many, unless */
+    int32_t (*count)(void); /* this knows how many */
 } group;
 
 static const group groups[] = {

@@ -68,11 +68,9 @@ typedef struct ptie_bench_spread {
     double median, low, high;
 } ptie_bench_spread;
 
-/* Sorts the values: the middle one (mean of the middle two), the smallest and the largest.  count
- * >= 1. */
+/* Sorts at least one value: the middle one (mean of the middle two), the smallest, the largest. */
 ptie_bench_spread ptie_bench_summarise(double *values, int32_t count);
 
-int32_t ptie_bench_threads(const ptie_bench *bench, ptie_bench_mode mode);
 /* Multiply-adds at full speed, in GFLOP/s.  Refers to the bench. */
 ptie_bench_case ptie_bench_peak_case(ptie_bench *bench, const char *name, ptie_bench_mode mode);
 /* How many of them make a reading of the peak; before the first measurement. */

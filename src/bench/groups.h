@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The groups.  Each hands so many measurements to ptie_bench_measure or ptie_bench_note. */
+/* The groups.  How many measurements each makes stands in bench.c. */
 #ifndef PTIE_BENCH_GROUPS_H
 #define PTIE_BENCH_GROUPS_H
 

@@ -15,7 +15,7 @@
 /* A reading of the peak: short beside a sample, long beside the waking of threads. */
 #define PEAK_S 2e-3
 
-int32_t ptie_bench_threads(const ptie_bench *bench, ptie_bench_mode mode) {
+static int32_t threads_of(const ptie_bench *bench, ptie_bench_mode mode) {
     return mode == PTIE_BENCH_ONE ? 1 : ptie_pool_threads(bench->engine->pool);
 }
 
@@ -187,7 +187,7 @@ ptie_status ptie_bench_measure(ptie_bench *bench, const ptie_bench_case *measure
     result->low = rate.low;
     result->high = rate.high;
     result->samples = samples.count;
-    result->threads = ptie_bench_threads(bench, measured->mode);
+    result->threads = threads_of(bench, measured->mode);
     if (measured->flops > 0) {
         result->gflops = 1e-9 * measured->flops * rate.median;
         result->peak_share = ptie_bench_summarise(samples.share, samples.count).median;
