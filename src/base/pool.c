@@ -3,6 +3,7 @@
 
 #include <pthread.h>
 #include <sched.h>
+#include <stdatomic.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -29,17 +30,20 @@ struct ptie_pool {
     ptie_task task;
     void *context;
     size_t count;
+    atomic_size_t next; /* index that the next free worker takes */
     worker workers[MAX_THREADS];
 };
 
+/* Takes indices one after the other until none is left, or until a task has failed.  They are handed
+   out in ascending order, so every index below a failed one has been handed out too. */
 static void work(worker *self, size_t count, ptie_task task, void *context) {
-    size_t threads = (size_t)self->pool->threads, me = (size_t)self->number;
-    size_t begin = count / threads * me + (count % threads < me ? count % threads : me);
-    size_t end = begin + count / threads + (me < count % threads);
     self->status = PTIE_OK;
-    for (size_t i = begin; i < end; i++) {
+    for (;;) {
+        const size_t i = atomic_fetch_add(&self->pool->next, 1);
+        if (i >= count) return;
         self->status = task(context, i, self->number);
         if (self->status == PTIE_OK) continue;
+        atomic_store(&self->pool->next, count);
         self->failed_at = i;
         memcpy(self->message, ptie_last_error(), strlen(ptie_last_error()) + 1);
         return;
@@ -125,6 +129,7 @@ ptie_status ptie_pool_run(ptie_pool *pool, size_t count, ptie_task task, void *c
     pool->task = task;
     pool->context = context;
     pool->count = count;
+    atomic_store(&pool->next, 0);
     pool->busy = pool->started;
     pool->job++;
     pthread_cond_broadcast(&pool->wake);
@@ -136,9 +141,11 @@ ptie_status ptie_pool_run(ptie_pool *pool, size_t count, ptie_task task, void *c
     while (pool->busy > 0) pthread_cond_wait(&pool->finished, &pool->lock);
     pthread_mutex_unlock(&pool->lock);
 
-    const worker *first = NULL; /* ranges ascend with the worker's number: the first failure is lowest */
-    for (int32_t i = 0; i < pool->threads && !first; i++)
-        if (pool->workers[i].status != PTIE_OK) first = &pool->workers[i];
+    const worker *first = NULL; /* the failure with the lowest index */
+    for (int32_t i = 0; i < pool->threads; i++) {
+        const worker *w = &pool->workers[i];
+        if (w->status != PTIE_OK && (!first || w->failed_at < first->failed_at)) first = w;
+    }
     if (!first) return PTIE_OK;
     ptie_set_message(first->message);
     return first->status;
