@@ -27,7 +27,7 @@ static ptie_status take_step(void *context, int32_t worker) {
                                      .weight_decay = 0.004};
     stepping *s = context;
     s->step++;
-    PTIE_TRY(ptie_stepper_gradients(s->stepper, PTIE_BENCH_BATCH, 0, s->step, s->parts));
+    PTIE_TRY(ptie_stepper_gradients(s->stepper, PTIE_BENCH_BATCH, 0, s->step, s->parts, NULL));
     ptie_stepper_update(s->stepper, &adamw, s->step);
     return PTIE_OK;
 }
@@ -36,7 +36,7 @@ static void fill_batch(ptie_stepper *stepper) {
     ptie_random random;
     ptie_random_init(&random, 0, PTIE_STREAM_WEIGHTS, 0);
     for (int32_t n = 0; n < PTIE_BENCH_BATCH; n++) {
-        float *noisy = ptie_stepper_noisy(stepper, n), *clean = ptie_stepper_clean(stepper, n);
+        float *noisy = ptie_stepper_noisy(stepper, n, false), *clean = ptie_stepper_clean(stepper, n, false);
         for (int i = 0; i < PTIE_BENCH_SIDE * PTIE_BENCH_SIDE; i++) {
             noisy[i] = (float)ptie_random_uniform(&random, 0, 1);
             clean[i] = (float)ptie_random_uniform(&random, 0, 1);

@@ -59,7 +59,7 @@ static void load_image(const ptie_stepper *stepper, const ptie_band *band, const
     for (int32_t c = 0; c < to->map.channels; c++)
         for (int32_t y = 0; y < to->map.height; y++)
             memcpy(to->map.data + c * to->map.plane + y * to->map.row,
-                   band->sample->noisy + (size_t)c * pixels + (size_t)(to->first + y) * width,
+                   band->sample->noisy[0] + (size_t)c * pixels + (size_t)(to->first + y) * width,
                    width * sizeof *to->map.data);
 }
 

@@ -70,7 +70,7 @@ ptie_status ptie_head(void *context, size_t index, int32_t worker) {
     const ptie_band band = ptie_band_first(stepper, last, index, worker);
     run_head(stepper, band);
     ptie_loss_evaluate(stepper->engine->kernels, &stepper->parts[index], workspace->slope,
-                       workspace->estimate, band.sample->clean, stepper->width, stepper->height,
+                       workspace->estimate, band.sample->clean[0], stepper->width, stepper->height,
                        stepper->loss, 1.0 / stepper->count, workspace->loss);
     if (stepper->model->params.output == PTIE_SIGMOID)
         sigmoid_backward(workspace->slope, workspace->estimate,

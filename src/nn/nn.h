@@ -54,15 +54,25 @@ ptie_status ptie_stepper_create(ptie_stepper **out, const ptie_engine *engine, p
                                 ptie_loss_weights weights);
 void ptie_stepper_free(ptie_stepper *stepper);
 
-/* Where the caller puts sample `i` of the batch before a step. */
-float *ptie_stepper_noisy(ptie_stepper *stepper, int32_t i); /* in_channels x height x width */
-float *ptie_stepper_clean(ptie_stepper *stepper, int32_t i); /* height x width */
+/* Where the caller puts sample `i`: of the batch that the next step takes or, `ahead`, of the one
+   after it.  noisy: in_channels x height x width, clean: height x width. */
+float *ptie_stepper_noisy(ptie_stepper *stepper, int32_t i, bool ahead);
+float *ptie_stepper_clean(ptie_stepper *stepper, int32_t i, bool ahead);
+/* What was put ahead becomes the batch of the next step. */
+void ptie_stepper_advance(ptie_stepper *stepper);
+
+/* Work of the caller's that shares the pool with a step, such as loading the next batch. */
+typedef struct ptie_aside {
+    ptie_task task;
+    void *context;
+    size_t count; /* of tasks */
+} ptie_aside;
 
 /* Forward in training mode, loss, backward over the first `count` samples.  Gradients are those of
    the mean loss over the batch.  Dropout draws from (seed, PTIE_STREAM_DROPOUT, step).  parts: one
-   per sample. */
+   per sample.  aside: NULL for none; its failure is the step's. */
 ptie_status ptie_stepper_gradients(ptie_stepper *stepper, int32_t count, uint64_t seed,
-                                   uint64_t step, ptie_loss_parts *parts);
+                                   uint64_t step, ptie_loss_parts *parts, const ptie_aside *aside);
 /* AdamW with decoupled decay on every trainable tensor; `step` counts from 1. */
 void ptie_stepper_update(ptie_stepper *stepper, const ptie_adamw *adamw, uint64_t step);
 /* Gradient, first or second moment of a trainable tensor by PyTorch name (which: 0, 1, 2); NULL if

@@ -62,8 +62,10 @@ static void slice_sample(const ptie_stepper *stepper, ptie_slicer *slicer,
     const size_t pixels = (size_t)stepper->height * (size_t)stepper->width;
     const size_t inputs = (size_t)stepper->model->params.in_channels;
     *sample = (ptie_sample_state){
-        .noisy = ptie_slice(slicer, pixels * inputs, sizeof(float)),
-        .clean = ptie_slice(slicer, pixels, sizeof(float)),
+        .noisy = {ptie_slice(slicer, pixels * inputs, sizeof(float)),
+                  ptie_slice(slicer, pixels * inputs, sizeof(float))},
+        .clean = {ptie_slice(slicer, pixels, sizeof(float)),
+                  ptie_slice(slicer, pixels, sizeof(float))},
         .z = ptie_slice(slicer, stepper->maps.floats, sizeof(float)),
         .gradients = ptie_slice(slicer, stepper->maps.floats, sizeof(float)),
         .coarse = ptie_slice(slicer, stepper->coarse.floats, sizeof(float)),
@@ -164,12 +166,25 @@ void ptie_stepper_free(ptie_stepper *stepper) {
     ptie_free(stepper);
 }
 
-float *ptie_stepper_noisy(ptie_stepper *stepper, int32_t i) {
-    return stepper->samples[i].noisy;
+float *ptie_stepper_noisy(ptie_stepper *stepper, int32_t i, bool ahead) {
+    return stepper->samples[i].noisy[ahead];
 }
 
-float *ptie_stepper_clean(ptie_stepper *stepper, int32_t i) {
-    return stepper->samples[i].clean;
+float *ptie_stepper_clean(ptie_stepper *stepper, int32_t i, bool ahead) {
+    return stepper->samples[i].clean[ahead];
+}
+
+static void swap(float *pair[2]) {
+    float *const first = pair[0];
+    pair[0] = pair[1];
+    pair[1] = first;
+}
+
+void ptie_stepper_advance(ptie_stepper *stepper) {
+    for (int32_t n = 0; n < stepper->batch; n++) {
+        swap(stepper->samples[n].noisy);
+        swap(stepper->samples[n].clean);
+    }
 }
 
 float *ptie_stepper_state(ptie_stepper *stepper, int which, const char *name, size_t *count) {
@@ -191,24 +206,40 @@ static void pack_weights(ptie_stepper *stepper) {
     }
 }
 
+/* The samples of the section first, then what the caller has put beside. */
+static ptie_status run_task(void *context, size_t index, int32_t worker) {
+    ptie_stepper *stepper = context;
+    const size_t samples = (size_t)stepper->count;
+    if (index < samples) return stepper->task(stepper, index, worker);
+    return stepper->aside.task(stepper->aside.context, index - samples, worker);
+}
+
+static ptie_status run_section(ptie_stepper *stepper, ptie_task task) {
+    stepper->task = task;
+    const size_t count = (size_t)stepper->count + stepper->aside.count;
+    PTIE_TRY(ptie_pool_run(stepper->engine->pool, count, run_task, stepper));
+    stepper->aside.count = 0; /* done with the first section */
+    return PTIE_OK;
+}
+
 ptie_status ptie_stepper_gradients(ptie_stepper *stepper, int32_t count, uint64_t seed,
-                                   uint64_t step, ptie_loss_parts *parts) {
+                                   uint64_t step, ptie_loss_parts *parts, const ptie_aside *aside) {
     assert(count >= 1 && count <= stepper->batch);
-    ptie_pool *pool = stepper->engine->pool;
     const int32_t layers = stepper->model->graph.layer_count;
     stepper->count = count;
     stepper->seed = seed;
     stepper->step = step;
     stepper->parts = parts;
+    stepper->aside = aside ? *aside : (ptie_aside){0};
     pack_weights(stepper);
     for (stepper->section = 0; stepper->section < layers; stepper->section++) {
-        PTIE_TRY(ptie_pool_run(pool, (size_t)count, ptie_forward_layer, stepper));
+        PTIE_TRY(run_section(stepper, ptie_forward_layer));
         ptie_forward_join(stepper);
     }
-    PTIE_TRY(ptie_pool_run(pool, (size_t)count, ptie_head, stepper));
+    PTIE_TRY(run_section(stepper, ptie_head));
     ptie_head_join(stepper);
     for (stepper->section = layers; stepper->section-- > 0;) {
-        PTIE_TRY(ptie_pool_run(pool, (size_t)count, ptie_backward_layer, stepper));
+        PTIE_TRY(run_section(stepper, ptie_backward_layer));
         ptie_backward_join(stepper);
     }
     return PTIE_OK;

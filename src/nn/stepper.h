@@ -15,7 +15,7 @@
 #include "nn/model.h"
 
 typedef struct ptie_sample_state {
-    float *noisy, *clean; /* contiguous (I, H, W) and (H, W): the caller's */
+    float *noisy[2], *clean[2]; /* contiguous (I, H, W) and (H, W): this batch's, the next one's */
     float *z, *gradients; /* blocks of the layout `maps` */
     float *coarse;        /* block of the layout `coarse` */
     double *sums;         /* (C, 2) of the layer that ends the section */
@@ -56,6 +56,8 @@ struct ptie_stepper {
     uint64_t seed, step;
     ptie_loss_parts *parts;
     int32_t section;
+    ptie_task task; /* of the section */
+    ptie_aside aside;
 };
 
 /* A band of a layer: the rows first .. first + rows - 1 of its level. */

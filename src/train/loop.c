@@ -50,23 +50,28 @@ static ptie_status report(const ptie_trainer *t, const char *note) {
 
 /* One step. */
 
+/* Loads sample i of the batch at t->loading. */
 static ptie_status load_sample(void *context, size_t i, int32_t worker) {
     ptie_trainer *t = context;
-    const uint64_t index = t->order[t->sums.samples + i];
+    const uint64_t index = t->order[t->loading + i];
     return ptie_dataset_fetch(t->dataset, PTIE_TRAIN, index,
-                              ptie_stepper_clean(t->stepper, (int32_t)i),
-                              ptie_stepper_noisy(t->stepper, (int32_t)i), NULL,
+                              ptie_stepper_clean(t->stepper, (int32_t)i, true),
+                              ptie_stepper_noisy(t->stepper, (int32_t)i, true), NULL,
                               t->scratch + (size_t)worker * t->scratch_bytes);
 }
 
-static ptie_status load_batch(ptie_trainer *t, int32_t *count) {
-    if (t->ordered_epoch != t->epoch_count) {
-        ptie_epoch_order(t->order, t->train_count, t->params->seed, t->epoch_count);
-        t->ordered_epoch = t->epoch_count;
-    }
-    const uint64_t left = t->train_count - t->sums.samples, batch = (uint64_t)t->params->batch;
-    *count = (int32_t)(left < batch ? left : batch);
-    return ptie_pool_run(t->engine->pool, (size_t)*count, load_sample, t);
+/* Samples of the batch that begins at a place of the epoch; 0 behind its end. */
+static int32_t batch_at(const ptie_trainer *t, uint64_t first) {
+    const uint64_t left = t->train_count - first, batch = (uint64_t)t->params->batch;
+    return (int32_t)(left < batch ? left : batch);
+}
+
+/* Only the first batch of an epoch is waited for: a step loads the one after it. */
+static ptie_status load_first(ptie_trainer *t, int32_t count) {
+    ptie_epoch_order(t->order, t->train_count, t->params->seed, t->epoch_count);
+    t->ordered_epoch = t->epoch_count;
+    t->loading = t->sums.samples;
+    return ptie_pool_run(t->engine->pool, (size_t)count, load_sample, t);
 }
 
 static ptie_status expect_finite(double value, const ptie_trainer *t, const char *what) {
@@ -85,14 +90,14 @@ static ptie_status expect_finite_weights(const ptie_trainer *t) {
     return PTIE_OK;
 }
 
-static ptie_status optimise(ptie_trainer *t, int32_t count) {
+static ptie_status optimise(ptie_trainer *t, int32_t count, const ptie_aside *aside) {
     const ptie_train_params *p = t->params;
     const ptie_adamw adamw = {.learning_rate = ptie_learning_rate(p, t->steps_per_epoch, t->step),
                               .beta1 = p->beta1,
                               .beta2 = p->beta2,
                               .epsilon = p->epsilon,
                               .weight_decay = p->weight_decay};
-    PTIE_TRY(ptie_stepper_gradients(t->stepper, count, p->seed, t->step + 1, t->parts));
+    PTIE_TRY(ptie_stepper_gradients(t->stepper, count, p->seed, t->step + 1, t->parts, aside));
     for (int32_t i = 0; i < count; i++) PTIE_TRY(expect_finite(t->parts[i].loss, t, "the loss"));
     ptie_stepper_update(t->stepper, &adamw, t->step + 1);
     PTIE_TRY(expect_finite_weights(t));
@@ -103,9 +108,12 @@ static ptie_status optimise(ptie_trainer *t, int32_t count) {
 
 static ptie_status take_step(ptie_trainer *t) {
     const double start_s = now_s();
-    int32_t count;
-    PTIE_TRY(load_batch(t, &count));
-    PTIE_TRY(optimise(t, count));
+    const int32_t count = batch_at(t, t->sums.samples);
+    if (t->ordered_epoch != t->epoch_count) PTIE_TRY(load_first(t, count));
+    ptie_stepper_advance(t->stepper);
+    t->loading = t->sums.samples + (uint64_t)count;
+    const ptie_aside next = {load_sample, t, (size_t)batch_at(t, t->loading)};
+    PTIE_TRY(optimise(t, count, &next));
     t->seconds += now_s() - start_s;
     const int32_t interval = t->params->checkpoint_steps;
     if (interval > 0 && t->step % (uint64_t)interval == 0) PTIE_TRY(ptie_checkpoint_save(t));

@@ -28,7 +28,8 @@ typedef struct ptie_trainer {
     uint64_t steps_per_epoch;
     uint32_t train_count;
     uint32_t *order;        /* samples of the epoch under way */
-    size_t ordered_epoch;   /* epoch that `order` belongs to; SIZE_MAX at first */
+    size_t ordered_epoch;   /* epoch that `order` and what is loaded belong to; SIZE_MAX at first */
+    uint64_t loading;       /* place in `order` of the batch that is being loaded */
     ptie_loss_parts *parts; /* one per sample of a batch */
     unsigned char *scratch; /* one part per worker */
     size_t scratch_bytes;

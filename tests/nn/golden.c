@@ -35,9 +35,9 @@ static void open_golden(golden *g, ptie_cpu_level level) {
     assert_ok(ptie_stepper_create(&g->stepper, &g->engine, g->model, BATCH, WIDTH, HEIGHT,
                                   paper_weights));
     for (int32_t n = 0; n < BATCH; n++) {
-        memcpy(ptie_stepper_noisy(g->stepper, n), tensor(g, "noisy") + n * PIXELS,
+        memcpy(ptie_stepper_noisy(g->stepper, n, false), tensor(g, "noisy") + n * PIXELS,
                PIXELS * sizeof(float));
-        memcpy(ptie_stepper_clean(g->stepper, n), tensor(g, "clean") + n * PIXELS,
+        memcpy(ptie_stepper_clean(g->stepper, n, false), tensor(g, "clean") + n * PIXELS,
                PIXELS * sizeof(float));
     }
 }
@@ -80,7 +80,7 @@ static void inference_matches_pytorch(void **state) {
 
 static void check_first_step(golden *g) {
     ptie_loss_parts parts[BATCH];
-    assert_ok(ptie_stepper_gradients(g->stepper, BATCH, 0, 1, parts));
+    assert_ok(ptie_stepper_gradients(g->stepper, BATCH, 0, 1, parts, NULL));
     for (int32_t n = 0; n < BATCH; n++) {
         const float *expected = tensor(g, "parts") + 5 * n;
         const double found[5] = {parts[n].loss, parts[n].l1, parts[n].ssim, parts[n].wmse,
@@ -112,7 +112,7 @@ static void check_ten_steps(golden *g) {
     const ptie_adamw adamw = {1e-3, 0.9, 0.999, 1e-7, 0.004};
     ptie_loss_parts parts[BATCH];
     for (uint64_t step = 1; step <= 10; step++) {
-        assert_ok(ptie_stepper_gradients(g->stepper, BATCH, 0, step, parts));
+        assert_ok(ptie_stepper_gradients(g->stepper, BATCH, 0, step, parts, NULL));
         ptie_stepper_update(g->stepper, &adamw, step);
         double loss = (parts[0].loss + parts[1].loss) / 2;
         double expected = (double)tensor(g, "step_losses")[step - 1];

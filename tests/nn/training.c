@@ -30,7 +30,7 @@ static void fill_samples(ptie_stepper *stepper, int32_t batch, int32_t channels,
     ptie_random random;
     ptie_random_init(&random, 1, PTIE_STREAM_FLOW, 0);
     for (int32_t n = 0; n < batch; n++) {
-        float *noisy = ptie_stepper_noisy(stepper, n), *clean = ptie_stepper_clean(stepper, n);
+        float *noisy = ptie_stepper_noisy(stepper, n, false), *clean = ptie_stepper_clean(stepper, n, false);
         for (int32_t i = 0; i < height * width; i++)
             clean[i] =
                 (float)(0.5 + 0.4 * sin(0.2 * (i % width) + n) * cos(0.3 * (double)(i / width)));
@@ -42,7 +42,7 @@ static void fill_samples(ptie_stepper *stepper, int32_t batch, int32_t channels,
 static double mean_loss(ptie_stepper *stepper, int32_t batch) {
     ptie_loss_parts parts[8];
     double sum = 0;
-    assert_ok(ptie_stepper_gradients(stepper, batch, 9, 4, parts));
+    assert_ok(ptie_stepper_gradients(stepper, batch, 9, 4, parts, NULL));
     for (int32_t n = 0; n < batch; n++) sum += parts[n].loss;
     return sum / batch;
 }
@@ -243,7 +243,7 @@ static float *train(int32_t threads, size_t *count) {
     assert_ok(ptie_stepper_create(&stepper, &engine, model, BATCH, SIZE, SIZE, paper_weights));
     fill_samples(stepper, BATCH, 1, SIZE, SIZE);
     for (uint64_t step = 1; step <= 3; step++) {
-        assert_ok(ptie_stepper_gradients(stepper, BATCH, 1, step, parts));
+        assert_ok(ptie_stepper_gradients(stepper, BATCH, 1, step, parts, NULL));
         ptie_stepper_update(stepper, &adamw, step);
     }
     *count = model->graph.values;
@@ -283,7 +283,7 @@ static void a_short_batch_ignores_the_rest(void **state) {
         assert_ok(ptie_stepper_create(&stepper, &engine, model, run ? 3 : BATCH, SIZE, SIZE,
                                       paper_weights));
         fill_samples(stepper, run ? 3 : BATCH, 1, SIZE, SIZE);
-        assert_ok(ptie_stepper_gradients(stepper, 3, 0, 1, parts[run]));
+        assert_ok(ptie_stepper_gradients(stepper, 3, 0, 1, parts[run], NULL));
         memcpy(gradients[run], ptie_stepper_state(stepper, 0, "enc1.conv1.weight", &count),
                sizeof gradients[run]);
         ptie_stepper_free(stepper);
@@ -361,9 +361,9 @@ static void dropout_depends_on_the_step_only(void **state) {
     assert_ok(ptie_nn_create(&model, &params));
     assert_ok(ptie_stepper_create(&stepper, &engine, model, 2, SIZE, SIZE, paper_weights));
     fill_samples(stepper, 2, 1, SIZE, SIZE);
-    assert_ok(ptie_stepper_gradients(stepper, 2, 7, 1, first));
-    assert_ok(ptie_stepper_gradients(stepper, 2, 7, 2, other));
-    assert_ok(ptie_stepper_gradients(stepper, 2, 7, 1, again));
+    assert_ok(ptie_stepper_gradients(stepper, 2, 7, 1, first, NULL));
+    assert_ok(ptie_stepper_gradients(stepper, 2, 7, 2, other, NULL));
+    assert_ok(ptie_stepper_gradients(stepper, 2, 7, 1, again, NULL));
     assert_memory_equal(first, again, sizeof first);
     assert_true(first[0].loss != other[0].loss && first[1].loss != other[1].loss);
     ptie_stepper_free(stepper);
