@@ -22,7 +22,7 @@ COLUMNS = ("epoch", "learning_rate", "seconds", *(f"{split}_{score}" for split i
 
 def read_split(file, split):
     """Noisy and clean maps (N, 1, H, W) of one split."""
-    first, last = dict(line.split() for line in file.attrs["split"].split(", "))[split].split(":")
+    first, last = dict(line.split() for line in file.attrs["split"])[split].split(":")
     return [torch.from_numpy(file[name][int(first):int(last)])[:, None] for name in ("noisy", "clean")]
 
 
