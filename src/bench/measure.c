@@ -15,10 +15,6 @@
 /* A reading of the peak: short beside a sample, long beside the waking of threads. */
 #define PEAK_S 2e-3
 
-static int32_t threads_of(const ptie_bench *bench, ptie_bench_mode mode) {
-    return mode == PTIE_BENCH_ONE ? 1 : ptie_pool_threads(bench->engine->pool);
-}
-
 bool ptie_bench_enough(const ptie_bench *bench, const ptie_bench_samples *samples,
                        double elapsed_s) {
     enum { FEW = 3 };
@@ -39,59 +35,63 @@ ptie_bench_spread ptie_bench_summarise(double *values, int32_t count) {
                                .high = values[count - 1]};
 }
 
-/* `calls` calls of a case, per thread. */
-typedef struct repetition {
-    const ptie_bench_case *measured;
-    int64_t calls;
-} repetition;
+static int32_t threads_of(const ptie_bench *bench, ptie_bench_mode mode) {
+    return mode == PTIE_BENCH_ONE ? 1 : ptie_pool_threads(bench->engine->pool);
+}
 
-static ptie_status repeat(void *context, size_t index, int32_t worker) {
+/* How many threads do the same at once. */
+static int32_t copies_of(const ptie_bench *bench, ptie_bench_mode mode) {
+    return mode == PTIE_BENCH_EACH ? ptie_pool_threads(bench->engine->pool) : 1;
+}
+
+/* What the threads take one after the other. */
+static ptie_status call_once(void *context, size_t index, int32_t worker) {
     (void)index;
-    const repetition *r = context;
-    for (int64_t i = 0; i < r->calls; i++)
-        PTIE_TRY(r->measured->work(r->measured->context, worker));
+    const ptie_bench_case *const *measured = context;
+    return (*measured)->work((*measured)->context, worker);
+}
+
+static ptie_status call_often(const ptie_bench *bench, const ptie_bench_case *measured,
+                              int64_t calls) {
+    if (measured->mode == PTIE_BENCH_EACH)
+        return ptie_pool_run(bench->engine->pool, (size_t)calls, call_once, &measured);
+    for (int64_t i = 0; i < calls; i++) PTIE_TRY(measured->work(measured->context, 0));
     return PTIE_OK;
 }
 
 static ptie_status time_calls(const ptie_bench *bench, const ptie_bench_case *measured,
                               int64_t calls, double *seconds) {
-    repetition r = {measured, calls};
     const double start_s = ptie_now_s();
-    if (measured->mode == PTIE_BENCH_EACH)
-        PTIE_TRY(ptie_pool_run(bench->engine->pool, (size_t)ptie_pool_threads(bench->engine->pool),
-                               repeat, &r));
-    else
-        PTIE_TRY(repeat(&r, 0, 0));
-    *seconds = ptie_now_s() - start_s;
+    PTIE_TRY(call_often(bench, measured, calls));
+    *seconds = fmax(ptie_now_s() - start_s, 1e-9); /* a clock may stand still */
     return PTIE_OK;
 }
 
-/* Units per second, of all threads together. */
-static ptie_status sample_rate(const ptie_bench *bench, const ptie_bench_case *measured,
-                               int64_t calls, double *rate) {
-    const int32_t copies =
-        measured->mode == PTIE_BENCH_EACH ? ptie_pool_threads(bench->engine->pool) : 1;
-    double seconds;
-    PTIE_TRY(time_calls(bench, measured, calls, &seconds));
-    *rate = copies * (double)calls * measured->amount / seconds;
-    return PTIE_OK;
-}
-
-/* Calls that take about `seconds`; what it does to find out also warms caches and clocks. */
+/* Calls that take about `seconds`, as many for every copy; what it does to find out also warms
+   caches and clocks. */
 static ptie_status calibrate(const ptie_bench *bench, const ptie_bench_case *measured,
                              double seconds, int64_t *calls) {
-    double taken = 0;
-    for (*calls = 1; *calls < INT64_MAX / 4; *calls *= 2) {
-        PTIE_TRY(time_calls(bench, measured, *calls, &taken));
-        if (taken >= seconds / 4) break;
-    }
-    *calls = (int64_t)ceil((double)*calls * seconds / fmax(taken, 1e-9));
+    const int64_t copies = copies_of(bench, measured->mode);
+    int64_t each = 1;
+    double taken;
+    PTIE_TRY(time_calls(bench, measured, each * copies, &taken));
+    while (taken < seconds / 4) PTIE_TRY(time_calls(bench, measured, (each *= 2) * copies, &taken));
+    *calls = (int64_t)ceil((double)each * seconds / taken) * copies;
+    return PTIE_OK;
+}
+
+/* Units per second, of all copies together. */
+static ptie_status sample_rate(const ptie_bench *bench, const ptie_bench_case *measured,
+                               int64_t calls, double *rate) {
+    double seconds;
+    PTIE_TRY(time_calls(bench, measured, calls, &seconds));
+    *rate = (double)calls * measured->amount / seconds;
     return PTIE_OK;
 }
 
 /* The peak. */
 
-enum { ROUNDS = 2000 }; /* in one call: some microseconds */
+enum { ROUNDS = 20000 }; /* in one call: some 50 microseconds */
 
 static ptie_status multiply_add(void *context, int32_t worker) {
     const ptie_bench *bench = context;
@@ -118,7 +118,7 @@ ptie_status ptie_bench_calibrate_peak(ptie_bench *bench) {
 /* One reading, in GFLOP/s. */
 static ptie_status read_peak(ptie_bench *bench, ptie_bench_mode mode, double *gflops) {
     const ptie_bench_case peak = ptie_bench_peak_case(bench, "peak", mode);
-    return sample_rate(bench, &peak, bench->peak_calls, gflops);
+    return sample_rate(bench, &peak, bench->peak_calls * copies_of(bench, peak.mode), gflops);
 }
 
 /* Samples. */
