@@ -141,7 +141,7 @@ static int draw(settings *s, ptie_ctx *ctx, const ptie_model *model) {
     ptie_denoiser *denoiser;
     ptie_dataset_size(s->samples.dataset, &width, &height);
     choose_samples(s, ptie_dataset_count(s->samples.dataset, (ptie_split)s->split));
-    ptie_status status = ptie_denoiser_create(&denoiser, ctx, model, width, height);
+    ptie_status status = ptie_denoiser_create(&denoiser, ctx, model, width, height, NULL);
     if (status != PTIE_OK) return failed(status);
     float *maps = calloc(3 * (size_t)s->shown.count, (size_t)width * (size_t)height * sizeof *maps);
     void *scratch = ptie_scratch_alloc(ptie_denoiser_scratch_bytes(denoiser));

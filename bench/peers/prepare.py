@@ -30,7 +30,7 @@ def denoise(path, model_path, noisy):
     height, width = noisy.shape[2:]
     expect(library.ptie_ctx_create(ctypes.byref(context), None), library)
     expect(library.ptie_model_load(ctypes.byref(model), str(model_path).encode()), library)
-    expect(library.ptie_denoiser_create(ctypes.byref(denoiser), context, model, width, height), library)
+    expect(library.ptie_denoiser_create(ctypes.byref(denoiser), context, model, width, height, None), library)
     library.ptie_denoiser_scratch_bytes.restype = ctypes.c_size_t
     library.ptie_scratch_alloc.restype = ctypes.c_void_p
     scratch = ctypes.c_void_p(library.ptie_scratch_alloc(

@@ -52,17 +52,30 @@ PTIE_API PTIE_NODISCARD ptie_status ptie_model_set_note(ptie_model *model, const
 
 typedef struct ptie_denoiser ptie_denoiser;
 
+typedef struct ptie_denoiser_params {
+    uint32_t struct_size; /* set by ptie_denoiser_params_init */
+    bool fast; /* minimal filtering, docs/math.md (N9): half the multiplications.  In [0, 1] the estimate differs
+                  by less than 2e-5 (the shipped model: 2e-6), which no metric shows. */
+    bool all_threads; /* a run takes all threads of the context for its one frame: least time to a result.
+                         The context must outlive the denoiser and do nothing else meanwhile. */
+} ptie_denoiser_params;
+
+PTIE_API void ptie_denoiser_params_init(ptie_denoiser_params *params); /* neither */
+
 /* Prepares a model for frames of one size: folds BatchNorm, plans memory.  Any size from 1 x 1; frames
-   are padded by reflection to a multiple of 2^(levels-1) and cropped.  Keeps no reference to the
-   model.  Errors: PTIE_EINVAL, PTIE_ESIZE (model wants other inputs), PTIE_ENOMEM. */
+   are padded by reflection to a multiple of 2^(levels-1) and cropped.  Scratch grows with a frame's width,
+   hardly with its height.  params NULL: the defaults.  Keeps no reference to the model.
+   Errors: PTIE_EINVAL, PTIE_ESIZE (model wants other inputs), PTIE_ENOMEM. */
 PTIE_API PTIE_NODISCARD ptie_status ptie_denoiser_create(ptie_denoiser **out, ptie_ctx *ctx,
                                                          const ptie_model *model, int32_t width_px,
-                                                         int32_t height_px);
+                                                         int32_t height_px,
+                                                         const ptie_denoiser_params *params);
 PTIE_API void ptie_denoiser_free(ptie_denoiser *denoiser); /* NULL is fine */
 PTIE_API size_t ptie_denoiser_scratch_bytes(const ptie_denoiser *denoiser);
 
 /* The network as the paper uses it: noisy in [0, 1] in, clean estimate in [0, 1] out.  Single-threaded
-   (run frames in parallel).  No allocation; const plan, one scratch per concurrent run.
+   (run frames in parallel), unless the denoiser has all threads; the result is the same, bit for bit.
+   `clean` may be `noisy`.  No allocation; const plan, one scratch per concurrent run.
    Errors: PTIE_ENUMERIC (input not finite). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_denoiser_run(const ptie_denoiser *denoiser, float *clean,
                                                       const float *noisy, void *scratch);

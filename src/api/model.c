@@ -72,8 +72,13 @@ ptie_status ptie_model_set_note(ptie_model *model, const char *key, const char *
     return ptie_nn_set_note(model, key, value);
 }
 
+void ptie_denoiser_params_init(ptie_denoiser_params *params) {
+    *params = (ptie_denoiser_params){.struct_size = sizeof *params};
+}
+
 ptie_status ptie_denoiser_create(ptie_denoiser **out, ptie_ctx *ctx, const ptie_model *model,
-                                 int32_t width_px, int32_t height_px) {
+                                 int32_t width_px, int32_t height_px,
+                                 const ptie_denoiser_params *params) {
     static const char where[] = "ptie_denoiser_create";
     enum { LARGEST = 32768 };
     PTIE_TRY(ptie_check_pointer(out, where, "out"));
@@ -82,7 +87,10 @@ ptie_status ptie_denoiser_create(ptie_denoiser **out, ptie_ctx *ctx, const ptie_
     PTIE_TRY(ptie_check_pointer(model, where, "model"));
     PTIE_TRY(ptie_check_integer(width_px, 1, LARGEST, where, "width_px"));
     PTIE_TRY(ptie_check_integer(height_px, 1, LARGEST, where, "height_px"));
-    return ptie_nn_denoiser(out, &ctx->engine, model, width_px, height_px);
+    ptie_denoiser_params own;
+    ptie_denoiser_params_init(&own);
+    if (params) PTIE_TRY(ptie_params_read(&own, sizeof own, params, where));
+    return ptie_nn_denoiser(out, &ctx->engine, model, width_px, height_px, &own);
 }
 
 void ptie_denoiser_free(ptie_denoiser *denoiser) {

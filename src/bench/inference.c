@@ -29,7 +29,7 @@ static ptie_status denoise_rad(void *context, int32_t worker) {
 
 static ptie_status prepare(inference *i, const ptie_bench *bench, const ptie_model *model,
                            int32_t side) {
-    PTIE_TRY(ptie_nn_denoiser(&i->denoiser, bench->engine, model, side, side));
+    PTIE_TRY(ptie_nn_denoiser(&i->denoiser, bench->engine, model, side, side, NULL));
     return ptie_frames_add_scratch(&i->frames, bench, ptie_nn_denoiser_scratch(i->denoiser));
 }
 

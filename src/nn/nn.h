@@ -79,9 +79,10 @@ void ptie_stepper_update(ptie_stepper *stepper, const ptie_adamw *adamw, uint64_
  * none. */
 float *ptie_stepper_state(ptie_stepper *stepper, int which, const char *name, size_t *count);
 
-/* Inference plan; single-threaded run. */
+/* Inference plan; contract as ptie_denoiser_create and ptie_denoiser_run. */
 ptie_status ptie_nn_denoiser(ptie_denoiser **out, const ptie_engine *engine,
-                             const ptie_model *model, int32_t width, int32_t height);
+                             const ptie_model *model, int32_t width, int32_t height,
+                             const ptie_denoiser_params *params); /* NULL: the defaults */
 void ptie_nn_denoiser_free(ptie_denoiser *denoiser);
 size_t ptie_nn_denoiser_scratch(const ptie_denoiser *denoiser);
 ptie_status ptie_nn_denoise(const ptie_denoiser *denoiser, float *clean, const float *noisy,

@@ -105,7 +105,7 @@ ptie_status ptie_nn_denoise_rad(const ptie_denoiser *denoiser, float *clean_rad,
     for (size_t i = 0; i < count; i++) image[i] = (sign * noisy_rad[i] - lowest) / range;
     /* The result may take the place of the input, so the measured map is kept as the network sees
      * it. */
-    PTIE_TRY(ptie_nn_denoise(denoiser, clean_rad, image, scratch));
+    PTIE_TRY(ptie_denoise_finite(denoiser, clean_rad, image, scratch));
     const double gain = fit_gain(clean_rad, image, width, height);
     const float background = background_level(clean_rad, count);
     const float scale = (float)(gain * (double)(sign * range));

@@ -28,7 +28,7 @@ static ptie_status prepare(denoising *d, const ptie_engine *engine) {
     d->frames = info.frames;
     d->pixels = (size_t)info.width_px * (size_t)info.height_px;
     d->block = (size_t)ptie_pool_threads(engine->pool);
-    PTIE_TRY(ptie_nn_denoiser(&d->denoiser, engine, p->model, info.width_px, info.height_px));
+    PTIE_TRY(ptie_nn_denoiser(&d->denoiser, engine, p->model, info.width_px, info.height_px, NULL));
     d->scratch_bytes = ptie_nn_denoiser_scratch(d->denoiser);
     PTIE_TRY(ptie_alloc_status(&d->maps, d->block, d->pixels * sizeof(float), "block of frames"));
     PTIE_TRY(ptie_alloc_status(&d->scratch, d->block, d->scratch_bytes, "scratch of the network"));

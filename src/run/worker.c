@@ -42,7 +42,7 @@ static ptie_status build(ptie_frame_plan *plan, const ptie_engine *engine, const
                          const ptie_model *model) {
     PTIE_TRY(plan_solver(plan, rig));
     if (model)
-        PTIE_TRY(ptie_nn_denoiser(&plan->denoiser, engine, model, plan->width, plan->height));
+        PTIE_TRY(ptie_nn_denoiser(&plan->denoiser, engine, model, plan->width, plan->height, NULL));
     PTIE_TRY(ptie_alloc_status(&plan->scratch, (size_t)plan->workers, sizeof *plan->scratch, "run"));
     for (int32_t i = 0; i < plan->workers; i++)
         PTIE_TRY(ptie_alloc_status(&plan->scratch[i], scratch_bytes(plan), 1, "run: scratch"));

@@ -106,7 +106,7 @@ static ptie_status prepare(scoring *s, ptie_denoiser **denoiser, const ptie_mode
                          "data set: the split is empty (expected at least 3 samples, found %llu)",
                          (unsigned long long)s->dataset->count);
     if (model) {
-        PTIE_TRY(ptie_nn_denoiser(denoiser, s->engine, model, width, height));
+        PTIE_TRY(ptie_nn_denoiser(denoiser, s->engine, model, width, height, NULL));
         s->denoiser = *denoiser;
     }
     ptie_slicer slicer = {0};

@@ -67,7 +67,7 @@ static void frames_are_those_of_the_denoiser(void **state) {
 
         ptie_denoiser *denoiser;
         ptie_recording *recording;
-        assert_ok(ptie_denoiser_create(&denoiser, ctx, model, WIDTH, HEIGHT));
+        assert_ok(ptie_denoiser_create(&denoiser, ctx, model, WIDTH, HEIGHT, NULL));
         void *scratch = ptie_scratch_alloc(ptie_denoiser_scratch_bytes(denoiser));
         assert_ok(ptie_recording_open(&recording, output));
         assert_int_equal(ptie_recording_get_info(recording)->frames, FRAMES);

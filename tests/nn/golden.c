@@ -61,7 +61,7 @@ static void at_every_level(void (*check)(golden *)) {
 static void check_inference(golden *g) {
     ptie_denoiser *denoiser;
     float clean[PIXELS];
-    assert_ok(ptie_nn_denoiser(&denoiser, &g->engine, g->model, WIDTH, HEIGHT));
+    assert_ok(ptie_nn_denoiser(&denoiser, &g->engine, g->model, WIDTH, HEIGHT, NULL));
     void *scratch = ptie_scratch_alloc(ptie_nn_denoiser_scratch(denoiser));
     for (int32_t n = 0; n < BATCH; n++) {
         assert_ok(ptie_nn_denoise(denoiser, clean, tensor(g, "noisy") + n * PIXELS, scratch));

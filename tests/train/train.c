@@ -53,7 +53,7 @@ static void scores_are_means_over_samples(void **state) {
     ptie_dataset *dataset;
     enum { SAMPLES = 140 }; /* more than two blocks */
     assert_ok(ptie_dataset_from_preset(&dataset, preset, 1, SAMPLES));
-    assert_ok(ptie_denoiser_create(&denoiser, ctx, model, TINY_SIDE, TINY_SIDE));
+    assert_ok(ptie_denoiser_create(&denoiser, ctx, model, TINY_SIDE, TINY_SIDE, NULL));
     void *scratch = ptie_scratch_alloc(ptie_denoiser_scratch_bytes(denoiser));
 
     ptie_scores expected[2] = {{0}}, found[2];
