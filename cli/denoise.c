@@ -18,6 +18,7 @@ typedef struct settings {
     compute_options compute;
     const char *model, *input, *output;
     int polarity;
+    bool fast;
 } settings;
 
 static int parse(settings *s, int argc, char **argv) {
@@ -27,6 +28,7 @@ static int parse(settings *s, int argc, char **argv) {
          .help = "recording to write (.h5, .tif, .npy, .png)"},
         {0, "polarity", OPTION_CHOICE, &s->polarity, "SIGN", .choices = polarities,
          .help = "sign of the flow's phase; auto judges every frame"},
+        {0, "fast", OPTION_FLAG, &s->fast, .help = "minimal filtering; differs in the last digits"},
         COMPUTE_OPTIONS(s->compute),
     };
     const command_usage usage = {.name = "denoise",
@@ -62,6 +64,7 @@ static ptie_status denoise(const settings *s) {
         params.input = s->input;
         params.output = s->output;
         params.polarity = s->polarity - 1;
+        params.fast = s->fast;
         params.overwrite = s->compute.force;
         status = ptie_denoise(ctx, &params, progress_callback(&progress));
     }

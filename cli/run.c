@@ -62,10 +62,12 @@ static int check(settings *s, const char *name, bool with_model) {
 
 static int parse(settings *s, const char *name, bool with_model, int argc, char **argv) {
     ptie_run_params *p = &s->params;
+    enum { OF_MODEL = 2 };
     const option options[] = {
-        /* Must stay the first: reconstruct leaves it out. */
+        /* Must stay the first: reconstruct leaves them out. */
         {'m', "model", OPTION_TEXT, &s->model_path, "FILE",
          .help = "denoising network (.safetensors)"},
+        {0, "fast", OPTION_FLAG, &p->fast, .help = "minimal filtering; differs in the last digits"},
         {'r', "rig", OPTION_TEXT, &s->rig_path, "FILE", .help = "how the set-up is built (.ini)"},
         {'o', "output", OPTION_TEXT, &p->output, "FILE", .help = "result to write (.h5)"},
         {0, "plus", OPTION_TEXT, &p->plus, "FILE",
@@ -108,8 +110,8 @@ static int parse(settings *s, const char *name, bool with_model, int argc, char 
                   "  ptie reconstruct --rig FILE --plus FILE --minus FILE -o FILE.h5 [options]",
         .notes = notes,
         .most = 1,
-        .options = options + (with_model ? 0 : 1),
-        .count = COUNT(options) - (with_model ? 0 : 1)};
+        .options = options + (with_model ? 0 : OF_MODEL),
+        .count = COUNT(options) - (with_model ? 0 : OF_MODEL)};
     operand_list files;
     int code = parse_options(&usage, argc, argv, &files);
     if (code != GO_ON) return code;

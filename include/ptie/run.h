@@ -47,6 +47,7 @@ typedef struct ptie_run_params {
     ptie_rect jet, background; /* regions of the metrics; all 0: proposed from the result */
     int64_t first, count, step;/* frames to take; count 0 = to the end; default 0, 0, 1 */
     bool overwrite;
+    bool fast;                 /* as ptie_denoiser_params, default false */
 } ptie_run_params;
 
 PTIE_API void ptie_run_params_init(ptie_run_params *params);
@@ -87,12 +88,13 @@ typedef struct ptie_denoise_params {
     const char *output;      /* recording to write, of any kind ptie_writer_create knows; required */
     int32_t polarity;        /* as ptie_denoiser_run_rad, default 0 */
     bool overwrite;
+    bool fast;               /* as ptie_denoiser_params, default false */
 } ptie_denoise_params;
 
 PTIE_API void ptie_denoise_params_init(ptie_denoise_params *params);
 
-/* Denoises every frame of a recording of phase with ptie_denoiser_run_rad, in constant memory.  The output
-   appears whole or not at all.  Errors: those of ptie_recording_read, ptie_denoiser_create and
+/* Denoises every frame of a recording of phase with ptie_denoiser_run_rad, in constant memory, frames in
+   parallel; a single frame takes all threads.  The output appears whole or not at all.  Errors: those of ptie_recording_read, ptie_denoiser_create and
    ptie_writer_create; PTIE_ECANCELLED. */
 PTIE_API PTIE_NODISCARD ptie_status ptie_denoise(ptie_ctx *ctx, const ptie_denoise_params *params,
                                                  ptie_progress progress);

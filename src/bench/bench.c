@@ -21,7 +21,7 @@ static const group groups[] = {
     {"peak", ptie_bench_peak, 3, NULL},
     {"kernels", ptie_bench_kernels, 0, ptie_bench_kernels_count},
     {"family", ptie_bench_family, 0, ptie_bench_family_count},
-    {"inference", ptie_bench_inference, 5, NULL},
+    {"inference", ptie_bench_inference, 10, NULL},
     {"training", ptie_bench_training, 3, NULL},
     {"generation", ptie_bench_generation, 2, NULL},
     {"solving", ptie_bench_solving, 4, NULL},

@@ -27,8 +27,10 @@ static ptie_status prepare(denoising *d, const ptie_engine *engine) {
     ptie_recording_info info = *ptie_io_info(d->input);
     d->frames = info.frames;
     d->pixels = (size_t)info.width_px * (size_t)info.height_px;
-    d->block = (size_t)ptie_pool_threads(engine->pool);
-    PTIE_TRY(ptie_nn_denoiser(&d->denoiser, engine, p->model, info.width_px, info.height_px, NULL));
+    const ptie_denoiser_params how = {.fast = p->fast, .all_threads = d->frames == 1};
+    d->block = how.all_threads ? 1 : (size_t)ptie_pool_threads(engine->pool);
+    PTIE_TRY(ptie_nn_denoiser(&d->denoiser, engine, p->model, info.width_px, info.height_px,
+                              &how));
     d->scratch_bytes = ptie_nn_denoiser_scratch(d->denoiser);
     PTIE_TRY(ptie_alloc_status(&d->maps, d->block, d->pixels * sizeof(float), "block of frames"));
     PTIE_TRY(ptie_alloc_status(&d->scratch, d->block, d->scratch_bytes, "scratch of the network"));
@@ -49,7 +51,8 @@ static ptie_status denoise_frames(denoising *d, ptie_pool *pool, ptie_progress p
             d->block < (size_t)(d->frames - first) ? d->block : (size_t)(d->frames - first);
         for (size_t i = 0; i < count; i++)
             PTIE_TRY(ptie_io_read(d->input, first + (int64_t)i, d->maps + i * d->pixels));
-        PTIE_TRY(ptie_pool_run(pool, count, denoise_task, d));
+        PTIE_TRY(d->frames == 1 ? denoise_task(d, 0, 0) /* takes the pool itself */
+                                : ptie_pool_run(pool, count, denoise_task, d));
         for (size_t i = 0; i < count; i++)
             PTIE_TRY(ptie_io_append(d->output, d->maps + i * d->pixels));
         first += (int64_t)count;

@@ -117,8 +117,9 @@ static ptie_status prepare(run *r) {
     r->pixels = (size_t)r->shape.width_px * (size_t)r->shape.height_px;
     PTIE_TRY(choose_frames(r));
     PTIE_TRY(open_truth(r));
+    const ptie_denoiser_params denoising = {.fast = p->fast, .all_threads = r->frames == 1};
     PTIE_TRY(ptie_frame_plan_create(&r->plan, r->engine, p->rig, p->model, r->shape.width_px,
-                                    r->shape.height_px));
+                                    r->shape.height_px, &denoising));
     PTIE_TRY(ptie_reprojection_create(&r->reprojection, p->rig, r->shape.width_px, r->shape.height_px,
                                       ptie_pool_threads(r->engine->pool)));
     PTIE_TRY(allocate(r));
@@ -192,7 +193,8 @@ static ptie_status solve_frames(run *r, ptie_progress progress) {
             PTIE_TRY(ptie_source_read(r->source, recorded_frame(r, first + (int64_t)i),
                                       frame_of(r->plus, r, i), frame_of(r->zero, r, i),
                                       frame_of(r->minus, r, i)));
-        PTIE_TRY(ptie_pool_run(r->engine->pool, count, solve_task, r));
+        PTIE_TRY(r->frames == 1 ? solve_task(r, 0, 0) /* takes the pool itself */
+                                : ptie_pool_run(r->engine->pool, count, solve_task, r));
         PTIE_TRY(ptie_h5_write(r->output, PTIE_RUN_PHASE, PTIE_H5_F32, (uint64_t)first, count, r->phase));
         if (r->denoised)
             PTIE_TRY(ptie_h5_write(r->output, PTIE_RUN_DENOISED, PTIE_H5_F32, (uint64_t)first, count,

@@ -39,10 +39,11 @@ static size_t scratch_bytes(const ptie_frame_plan *plan) {
 }
 
 static ptie_status build(ptie_frame_plan *plan, const ptie_engine *engine, const ptie_rig *rig,
-                         const ptie_model *model) {
+                         const ptie_model *model, const ptie_denoiser_params *params) {
     PTIE_TRY(plan_solver(plan, rig));
     if (model)
-        PTIE_TRY(ptie_nn_denoiser(&plan->denoiser, engine, model, plan->width, plan->height, NULL));
+        PTIE_TRY(ptie_nn_denoiser(&plan->denoiser, engine, model, plan->width, plan->height,
+                                  params));
     PTIE_TRY(ptie_alloc_status(&plan->scratch, (size_t)plan->workers, sizeof *plan->scratch, "run"));
     for (int32_t i = 0; i < plan->workers; i++)
         PTIE_TRY(ptie_alloc_status(&plan->scratch[i], scratch_bytes(plan), 1, "run: scratch"));
@@ -51,7 +52,7 @@ static ptie_status build(ptie_frame_plan *plan, const ptie_engine *engine, const
 
 ptie_status ptie_frame_plan_create(ptie_frame_plan **out, const ptie_engine *engine,
                                    const ptie_rig *rig, const ptie_model *model, int32_t width_px,
-                                   int32_t height_px) {
+                                   int32_t height_px, const ptie_denoiser_params *params) {
     *out = NULL;
     ptie_frame_plan *plan;
     PTIE_TRY(ptie_alloc_status(&plan, 1, sizeof *plan, "run"));
@@ -60,7 +61,7 @@ ptie_status ptie_frame_plan_create(ptie_frame_plan **out, const ptie_engine *eng
     plan->zero_border = rig->zero_border;
     plan->polarity = rig->polarity;
     plan->workers = ptie_pool_threads(engine->pool);
-    ptie_status status = build(plan, engine, rig, model);
+    ptie_status status = build(plan, engine, rig, model, params);
     if (status == PTIE_OK)
         *out = plan;
     else

@@ -7,11 +7,12 @@
 
 #include "kernel/engine.h"
 
+/* params: how the model runs, NULL: the defaults.  With all threads, ptie_frame_solve takes the pool. */
 typedef struct ptie_frame_plan ptie_frame_plan;
 
 ptie_status ptie_frame_plan_create(ptie_frame_plan **out, const ptie_engine *engine,
                                    const ptie_rig *rig, const ptie_model *model, int32_t width_px,
-                                   int32_t height_px);
+                                   int32_t height_px, const ptie_denoiser_params *params);
 void ptie_frame_plan_free(ptie_frame_plan *plan); /* NULL is fine */
 
 /* phase, denoised (out; denoised untouched without a model) from the planes; i_zero or i_minus may be

@@ -12,17 +12,21 @@ enum { WIDTH = 40, HEIGHT = 24, FRAMES = 7, PIXELS = WIDTH * HEIGHT };
 
 static float phase[FRAMES][PIXELS];
 
-static const char *write_phase(void) {
+static const char *write_frames(int frames) {
     const char *path = support_temporary("phase.npy");
-    ptie_recording_info info = {.width_px = WIDTH, .height_px = HEIGHT, .frames = FRAMES};
+    ptie_recording_info info = {.width_px = WIDTH, .height_px = HEIGHT, .frames = frames};
     ptie_writer *writer;
     for (int t = 0; t < FRAMES; t++)
         for (int i = 0; i < PIXELS; i++)
             phase[t][i] = (float)(sin(0.3 * (i % WIDTH) + t) * exp(-0.01 * (i / WIDTH)) - 0.2);
     assert_ok(ptie_writer_create(&writer, path, "phase", &info, true));
-    for (int t = 0; t < FRAMES; t++) assert_ok(ptie_writer_append(writer, phase[t]));
+    for (int t = 0; t < frames; t++) assert_ok(ptie_writer_append(writer, phase[t]));
     assert_ok(ptie_writer_close(writer));
     return path;
+}
+
+static const char *write_phase(void) {
+    return write_frames(FRAMES);
 }
 
 static ptie_model *small_model(void) {
@@ -85,6 +89,39 @@ static void frames_are_those_of_the_denoiser(void **state) {
     ptie_model_free(model);
 }
 
+/* Which takes all threads, and may be fast. */
+static void a_single_frame_is_that_of_the_denoiser(void **state) {
+    (void)state;
+    ptie_model *model = small_model();
+    const char *input = write_frames(1), *output = support_temporary("single.npy");
+    static float expected[PIXELS], found[PIXELS];
+    for (int fast = 0; fast < 2; fast++) {
+        ptie_ctx *ctx = context(3);
+        ptie_denoise_params params = request(model, input, output);
+        params.polarity = 1;
+        params.fast = fast;
+        params.overwrite = true;
+        assert_ok(ptie_denoise(ctx, &params, (ptie_progress){0}));
+
+        ptie_denoiser *denoiser;
+        ptie_recording *recording;
+        ptie_denoiser_params how;
+        ptie_denoiser_params_init(&how);
+        how.fast = fast;
+        assert_ok(ptie_denoiser_create(&denoiser, ctx, model, WIDTH, HEIGHT, &how));
+        void *scratch = ptie_scratch_alloc(ptie_denoiser_scratch_bytes(denoiser));
+        assert_ok(ptie_denoiser_run_rad(denoiser, expected, phase[0], 1, scratch));
+        assert_ok(ptie_recording_open(&recording, output));
+        assert_ok(ptie_recording_read(recording, 0, found));
+        assert_memory_equal(found, expected, sizeof found);
+        ptie_recording_close(recording);
+        ptie_scratch_free(scratch);
+        ptie_denoiser_free(denoiser);
+        ptie_ctx_free(ctx);
+    }
+    ptie_model_free(model);
+}
+
 static int stop_after_two(void *user, uint64_t done, uint64_t total, const char *note) {
     (void)user, (void)total, (void)note;
     return done >= 2;
@@ -112,6 +149,7 @@ static void failures_leave_no_file(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_are_those_of_the_denoiser),
+        cmocka_unit_test(a_single_frame_is_that_of_the_denoiser),
         cmocka_unit_test(failures_leave_no_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
