@@ -244,10 +244,10 @@ static void walk(stream *s, int32_t first) {
 }
 
 /* Rows beyond those a window must hold: the more, the less often it moves, which costs a copy.
-   Measured: a plane of 64 KiB more is worth it, for narrow frames no more than as many rows. */
-static int32_t spare_rows(const ptie_map *map) {
+   Measured: 64 KiB more of a frame's rows are worth it. */
+static int32_t spare_rows(const ptie_denoiser *denoiser) {
     enum { SPARE_FLOATS = 16384, LEAST = 8, MOST = 64 };
-    return larger(LEAST, smaller(MOST, SPARE_FLOATS / map->width));
+    return larger(LEAST, smaller(MOST, SPARE_FLOATS / denoiser->full_width));
 }
 
 void ptie_stream_plan(ptie_denoiser *denoiser) {
@@ -258,7 +258,7 @@ void ptie_stream_plan(ptie_denoiser *denoiser) {
         const ptie_map map = denoiser->windows[i];
         if (map.channels > 0)
             denoiser->windows[i] =
-                ptie_map_make(map.channels, s.windows[i].most + spare_rows(&map), map.width);
+                ptie_map_make(map.channels, s.windows[i].most + spare_rows(denoiser), map.width);
     }
 }
 

@@ -235,7 +235,7 @@ static void a_shared_frame_may_be_denoised_in_place(void **state) {
     close_fixture(&f);
 }
 
-/* The paper's network: rounding differs, the estimate in [0, 1] hardly (FAST_ERROR). */
+/* The paper's network: rounding differs, the estimate in [0, 1] hardly. */
 static void fast_is_close(void **state) {
     (void)state;
     enum { WIDTH = 256, HEIGHT = 256, COUNT = WIDTH * HEIGHT };
@@ -269,12 +269,12 @@ static void memory_does_not_grow_with_the_area(void **state) {
         const int32_t height = SIDE << tall;
         ptie_denoiser *denoiser;
         assert_ok(ptie_denoiser_create(&denoiser, f.ctx, f.model, SIDE, height, NULL));
-        bytes[tall] =
-            ptie_denoiser_scratch_bytes(denoiser) - (size_t)SIDE * (size_t)height * sizeof(float);
+        bytes[tall] = ptie_denoiser_scratch_bytes(denoiser);
         ptie_denoiser_free(denoiser);
     }
-    assert_true(2 * bytes[0] < (size_t)64 << 20);
-    assert_int_equal(bytes[0], bytes[1]);
+    assert_true(2 * bytes[0] < 64000000); /* 52e6 */
+    /* One frame, for the way from and to rad, is all that grows. */
+    assert_int_equal(bytes[1] - bytes[0], (size_t)SIDE * SIDE * sizeof(float));
     close_fixture(&f);
 }
 
