@@ -21,13 +21,35 @@ void ptie_random_init(ptie_random *random, uint64_t seed, uint32_t stream, uint6
 
 static void next_block(ptie_random *random) {
     ptie_philox(random->block, random->counter, random->key);
-    random->counter[0]++; /* 2^32 blocks per stream: 64 GiB of numbers, never reached by one sample */
+    random
+        ->counter[0]++; /* 2^32 blocks per stream: 64 GiB of numbers, never reached by one sample */
     random->used = 0;
 }
 
 uint32_t ptie_random_u32(ptie_random *random) {
     if (random->used == 4) next_block(random);
     return random->block[random->used++];
+}
+
+PTIE_CLONES static void fill_words(uint32_t *out, size_t blocks, const uint32_t key[2],
+                                   const uint32_t counter[4]) {
+    for (size_t i = 0; i < blocks; i++) {
+        const uint32_t own[4] = {counter[0] + (uint32_t)i, counter[1], counter[2], counter[3]};
+        ptie_philox(out + 4 * i, own, key);
+    }
+}
+
+void ptie_random_words(ptie_random *random, uint32_t *out, size_t count) {
+    const size_t blocks = count / 4, rest = count % 4;
+    fill_words(out, blocks, random->key, random->counter);
+    random->counter[0] += (uint32_t)blocks;
+    if (rest) {
+        uint32_t last[4];
+        fill_words(last, 1, random->key, random->counter);
+        random->counter[0]++;
+        memcpy(out + 4 * blocks, last, rest * sizeof *out);
+    }
+    random->used = 4;
 }
 
 double ptie_random_uniform(ptie_random *random, double low, double high) {

@@ -49,6 +49,8 @@ PTIE_INLINE void ptie_philox(uint32_t out[4], const uint32_t counter[4], const u
 
 void ptie_random_init(ptie_random *random, uint64_t seed, uint32_t stream, uint64_t sample);
 uint32_t ptie_random_u32(ptie_random *random);
+/* count words; what is left of a block at the end is not used. */
+void ptie_random_words(ptie_random *random, uint32_t *out, size_t count);
 /* Uniform in [low, high); 53 random bits. */
 double ptie_random_uniform(ptie_random *random, double low, double high);
 /* exp(uniform(log low, log high)); 0 < low <= high. */

@@ -61,10 +61,10 @@ static void conv3x3_input(const ptie_kernels *k, const maps *m) {
     k->conv3x3(&m->in, &m->out, m->adjoint, NULL, false);
 }
 static void winograd3x3(const ptie_kernels *k, const maps *m) {
-    k->winograd3x3(&m->out, &m->in, m->parts, m->bias, true, m->scratch);
+    k->winograd3x3(&m->out, &m->in, m->parts, m->bias, true, NULL, m->scratch);
 }
 static void winograd3x3_input(const ptie_kernels *k, const maps *m) {
-    k->winograd3x3(&m->in, &m->out, m->parts_adjoint, NULL, false, m->scratch);
+    k->winograd3x3(&m->in, &m->out, m->parts_adjoint, NULL, false, NULL, m->scratch);
 }
 static void conv3x3_weights(const ptie_kernels *k, const maps *m) {
     k->conv3x3_weights(m->sums, &m->out, &m->in, m->scratch);
@@ -75,8 +75,8 @@ static void conv1x1(const ptie_kernels *k, const maps *m) {
 static void conv1x1_weights(const ptie_kernels *k, const maps *m) {
     k->conv1x1_weights(m->sums, m->sums + m->in.channels * m->out.channels, &m->out, &m->in);
 }
-static void moments(const ptie_kernels *k, const maps *m) {
-    k->moments(m->sums, &m->in);
+static void winograd3x3_moments(const ptie_kernels *k, const maps *m) {
+    k->winograd3x3(&m->out, &m->in, m->parts, NULL, false, m->sums, m->scratch);
 }
 static void normalise(const ptie_kernels *k, const maps *m) {
     k->normalise(&m->out, &m->in, m->norms);
@@ -115,6 +115,8 @@ static const kernel_case kernel_cases[] = {
      .call = conv3x3_input}, /* nobody asks for the gradient of the image */
     /* Its operations are counted as those of the direct sums. */
     {"winograd3x3", "3x3 Winograd", SHAPES(convolutions), .taps = 9, .call = winograd3x3},
+    {"winograd3x3", "3x3 Winograd with moments", SHAPES(convolutions), .taps = 9,
+     .call = winograd3x3_moments},
     {"winograd3x3", "3x3 Winograd input gradient", convolutions + 1, COUNT(convolutions) - 1,
      .taps = 9, .call = winograd3x3_input},
     {"conv3x3_weights", "3x3 weight gradient", SHAPES(convolutions), .taps = 9,
@@ -122,7 +124,6 @@ static const kernel_case kernel_cases[] = {
     {"conv1x1", "1x1", SHAPES(head), .in = 1, .out = 1, .call = conv1x1},
     {"conv1x1_weights", "1x1 weight gradient", SHAPES(head), .in = 1, .out = 1,
      .call = conv1x1_weights},
-    {"moments", "moments", SHAPES(activation), .in = 1, .call = moments},
     {"normalise", "normalise", SHAPES(activation), .in = 1, .out = 1, .call = normalise},
     {"normalise_sums", "normalise: sums", SHAPES(activation), .in = 1, .out = 1,
      .call = normalise_sums},

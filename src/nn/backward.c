@@ -11,10 +11,14 @@ static ptie_map z_gradient(const ptie_stepper *stepper, const ptie_band *band) {
     const int32_t k = band->layer;
     ptie_map padded = ptie_layout_map(&stepper->z_grad, band->workspace->z_grad, k);
     padded.height = band->rows + 2;
-    const ptie_clip inside = ptie_clip_band(&padded, band->first, stepper->maps.maps[k].height);
+    const ptie_clip inside = ptie_clip_band(&padded, band->first, stepper->z.maps[k].height);
     const int32_t first = inside.first, rows = inside.map.height;
     const ptie_map z = ptie_z_rows(stepper, band->sample, k, first, rows);
-    const ptie_map grad = ptie_gradient_rows(stepper, band->sample, k, first, rows);
+    ptie_map grad = inside.map;
+    if (k == stepper->model->graph.layer_count - 1)
+        ptie_head_gradient(stepper, band->sample, &grad, first);
+    else
+        grad = ptie_gradient_rows(stepper, band->sample, k, first, rows);
     stepper->engine->kernels->normalise_backward(&inside.map, &grad, &z, stepper->norms[k]);
     return ptie_map_rows(padded, 1, band->rows);
 }
@@ -46,7 +50,7 @@ static void clear_map(const ptie_map *map) {
 static void unconvolve(const ptie_stepper *stepper, const ptie_band *band, const ptie_map *to,
                        const ptie_map *z_grad) {
     stepper->engine->kernels->winograd3x3(to, z_grad, stepper->packed_adjoint[band->layer], NULL,
-                                          false, band->workspace->scratch);
+                                          false, NULL, band->workspace->scratch);
 }
 
 static ptie_map unconvolve_aside(const ptie_stepper *stepper, const ptie_band *band,
@@ -71,7 +75,7 @@ static void unjoin(const ptie_stepper *stepper, const ptie_band *band, const pti
     const int32_t before = band->layer - 1;
     const int32_t skip = stepper->model->graph.layers[band->layer].skip;
     const ptie_map in_grad = unconvolve_aside(stepper, band, z_grad);
-    const ptie_map *coarse = &stepper->maps.maps[before];
+    const ptie_map *coarse = &stepper->z.maps[before];
     const ptie_map up = ptie_map_channels(in_grad, 0, coarse->channels);
     const ptie_map rest =
         ptie_map_channels(in_grad, coarse->channels, in_grad.channels - coarse->channels);
@@ -114,7 +118,7 @@ static void drop_gradient(const ptie_map *grad, const ptie_map *dropped, float k
 }
 
 static void finish_join(const ptie_stepper *stepper, const ptie_band *band) {
-    const int32_t before = band->layer - 1, height = stepper->maps.maps[before].height;
+    const int32_t before = band->layer - 1, height = stepper->z.maps[before].height;
     const ptie_map grad = ptie_gradient_rows(stepper, band->sample, before, 0, height);
     const ptie_map coarse = ptie_layout_map(&stepper->coarse, band->sample->coarse, band->layer);
     const double rate = stepper->model->params.dropout;
@@ -133,7 +137,7 @@ ptie_status ptie_backward_layer(void *context, size_t index, int32_t worker) {
     memset(band.sample->sums, 0, 2 * stepper->most_channels * sizeof *band.sample->sums);
     if (join) {
         const ptie_map grad =
-            ptie_gradient_rows(stepper, band.sample, k - 1, 0, stepper->maps.maps[k - 1].height);
+            ptie_gradient_rows(stepper, band.sample, k - 1, 0, stepper->z.maps[k - 1].height);
         clear_map(&grad); /* the bands add to it */
     }
     for (; band.rows > 0; ptie_band_next(stepper, &band)) unconvolve_band(stepper, &band);
@@ -155,7 +159,7 @@ static void join_weights(ptie_stepper *stepper, const ptie_param *param, size_t 
 static void join_norms(ptie_stepper *stepper, int32_t k) {
     const ptie_layer *layer = &stepper->model->graph.layers[k];
     const ptie_param *params = &stepper->model->graph.params[layer->params];
-    const ptie_map *z = &stepper->maps.maps[k];
+    const ptie_map *z = &stepper->z.maps[k];
     const double pixels = (double)stepper->count * z->height * z->width;
     for (int32_t c = 0; c < layer->out_channels; c++) {
         double g = 0, gx = 0;

@@ -10,7 +10,7 @@ static int32_t smaller(int32_t a, int32_t b) {
 
 ptie_band ptie_band_first(const ptie_stepper *stepper, int32_t layer, size_t sample,
                           int32_t worker) {
-    const int32_t height = stepper->maps.maps[layer].height;
+    const int32_t height = stepper->z.maps[layer].height;
     return (ptie_band){.layer = layer,
                        .rows = smaller(stepper->rows[layer], height),
                        .sample = &stepper->samples[sample],
@@ -18,19 +18,20 @@ ptie_band ptie_band_first(const ptie_stepper *stepper, int32_t layer, size_t sam
 }
 
 void ptie_band_next(const ptie_stepper *stepper, ptie_band *band) {
-    const int32_t height = stepper->maps.maps[band->layer].height;
+    const int32_t height = stepper->z.maps[band->layer].height;
     band->first += band->rows;
     band->rows = smaller(stepper->rows[band->layer], height - band->first);
 }
 
 ptie_map ptie_z_rows(const ptie_stepper *stepper, const ptie_sample_state *sample, int32_t layer,
                      int32_t first, int32_t rows) {
-    return ptie_map_rows(ptie_layout_map(&stepper->maps, sample->z, layer), first, rows);
+    return ptie_map_rows(ptie_layout_map(&stepper->z, sample->z, layer), first, rows);
 }
 
 ptie_map ptie_gradient_rows(const ptie_stepper *stepper, const ptie_sample_state *sample,
                             int32_t layer, int32_t first, int32_t rows) {
-    return ptie_map_rows(ptie_layout_map(&stepper->maps, sample->gradients, layer), first, rows);
+    return ptie_map_rows(ptie_layout_map(&stepper->gradients, sample->gradients, layer), first,
+                         rows);
 }
 
 static void clear_row(const ptie_map *map, int32_t row) {
@@ -93,7 +94,7 @@ ptie_map ptie_band_input(const ptie_stepper *stepper, const ptie_band *band) {
     ptie_map padded = ptie_layout_map(&stepper->input, band->workspace->input, band->layer);
     padded.height = band->rows + 2;
     const ptie_clip inside =
-        ptie_clip_band(&padded, band->first, stepper->maps.maps[band->layer].height);
+        ptie_clip_band(&padded, band->first, stepper->z.maps[band->layer].height);
     switch (stepper->model->graph.layers[band->layer].input) {
     case PTIE_INPUT_IMAGE: load_image(stepper, band, &inside); break;
     case PTIE_INPUT_SAME:

@@ -6,6 +6,16 @@
 #include "base/random.h"
 #include "nn/stepper.h"
 
+static void drop_row(float *row, int32_t width, uint32_t threshold, float kept,
+                     ptie_random *random) {
+    uint32_t words[64];
+    for (int32_t x = 0; x < width; x += 64) {
+        const int32_t count = width - x < 64 ? width - x : 64;
+        ptie_random_words(random, words, (size_t)count);
+        for (int32_t i = 0; i < count; i++) row[x + i] *= words[i] < threshold ? 0 : kept;
+    }
+}
+
 void ptie_dropout(const ptie_stepper *stepper, const ptie_map *map, size_t sample) {
     const double rate = stepper->model->params.dropout;
     if (rate == 0) return;
@@ -16,11 +26,9 @@ void ptie_dropout(const ptie_stepper *stepper, const ptie_map *map, size_t sampl
     ptie_random_init(&random, stepper->seed, PTIE_STREAM_DROPOUT,
                      stepper->step * largest_batch + sample);
     for (int32_t c = 0; c < map->channels; c++)
-        for (int32_t y = 0; y < map->height; y++) {
-            float *row = map->data + c * map->plane + y * map->row;
-            for (int32_t x = 0; x < map->width; x++)
-                row[x] *= ptie_random_u32(&random) < threshold ? 0 : kept;
-        }
+        for (int32_t y = 0; y < map->height; y++)
+            drop_row(map->data + c * map->plane + y * map->row, map->width, threshold, kept,
+                     &random);
 }
 
 /* What a join upsamples. */
@@ -45,8 +53,8 @@ ptie_status ptie_forward_layer(void *context, size_t index, int32_t worker) {
     for (; band.rows > 0; ptie_band_next(stepper, &band)) {
         const ptie_map in = ptie_band_input(stepper, &band);
         const ptie_map z = ptie_z_rows(stepper, band.sample, k, band.first, band.rows);
-        kernels->winograd3x3(&z, &in, stepper->packed[k], NULL, false, band.workspace->scratch);
-        kernels->moments(sums, &z);
+        kernels->winograd3x3(&z, &in, stepper->packed[k], NULL, false, sums,
+                             band.workspace->scratch);
     }
     return PTIE_OK;
 }
@@ -56,7 +64,7 @@ void ptie_forward_join(ptie_stepper *stepper) {
     const int32_t k = stepper->section;
     ptie_model *model = stepper->model;
     const ptie_layer *layer = &model->graph.layers[k];
-    const ptie_map *z = &stepper->maps.maps[k];
+    const ptie_map *z = &stepper->z.maps[k];
     const double pixels = (double)stepper->count * z->height * z->width;
     const float *gamma = ptie_model_values(model, layer->params, PTIE_GAMMA);
     const float *beta = ptie_model_values(model, layer->params, PTIE_BETA);

@@ -36,8 +36,10 @@ static void lay_out_layer(ptie_stepper *stepper, int32_t k) {
     const ptie_layer *layer = &graph->layers[k];
     const int32_t height = stepper->height >> layer->level, width = stepper->width >> layer->level;
     const int32_t rows = stepper->rows[k] = band_rows(layer, height, width);
+    const int32_t last = graph->layer_count - 1;
     const bool join = layer->input == PTIE_INPUT_JOIN, pool = layer->input == PTIE_INPUT_POOL;
-    ptie_layout_add(&stepper->maps, k, layer->out_channels, height, width);
+    ptie_layout_add(&stepper->z, k, layer->out_channels, height, width);
+    ptie_layout_add(&stepper->gradients, k, k == last ? 0 : layer->out_channels, height, width);
     ptie_layout_add(&stepper->coarse, k, join ? graph->layers[k - 1].out_channels : 0, height / 2,
                     width / 2);
     ptie_layout_add(&stepper->input, k, layer->in_channels, rows + 2, width);
@@ -66,9 +68,10 @@ static void slice_sample(const ptie_stepper *stepper, ptie_slicer *slicer,
                   ptie_slice(slicer, pixels * inputs, sizeof(float))},
         .clean = {ptie_slice(slicer, pixels, sizeof(float)),
                   ptie_slice(slicer, pixels, sizeof(float))},
-        .z = ptie_slice(slicer, stepper->maps.floats, sizeof(float)),
-        .gradients = ptie_slice(slicer, stepper->maps.floats, sizeof(float)),
+        .z = ptie_slice(slicer, stepper->z.floats, sizeof(float)),
+        .gradients = ptie_slice(slicer, stepper->gradients.floats, sizeof(float)),
         .coarse = ptie_slice(slicer, stepper->coarse.floats, sizeof(float)),
+        .slope = ptie_slice(slicer, pixels, sizeof(float)),
         .sums = ptie_slice(slicer, 2 * stepper->most_channels, sizeof(double)),
         .weights = ptie_slice(slicer, stepper->total_count, sizeof(double)),
     };
@@ -96,7 +99,6 @@ static void slice_workspace(const ptie_stepper *stepper, ptie_slicer *slicer,
         .finer = ptie_slice(slicer, stepper->finer.floats, sizeof(float)),
         .scratch = ptie_slice(slicer, scratch_floats(&stepper->model->graph), sizeof(float)),
         .estimate = ptie_slice(slicer, pixels, sizeof(float)),
-        .slope = ptie_slice(slicer, pixels, sizeof(float)),
         .loss = ptie_slice(slicer, ptie_loss_scratch(stepper->width, stepper->height), 1),
     };
 }

@@ -16,17 +16,18 @@
 
 typedef struct ptie_sample_state {
     float *noisy[2], *clean[2]; /* contiguous (I, H, W) and (H, W): this batch's, the next one's */
-    float *z, *gradients; /* blocks of the layout `maps` */
-    float *coarse;        /* block of the layout `coarse` */
-    double *sums;         /* (C, 2) of the layer that ends the section */
-    double *weights;      /* gradient of the weights of the section's layer or head */
+    float *z, *gradients;       /* blocks of the layouts of these names */
+    float *coarse;              /* block of the layout `coarse` */
+    float *slope;               /* (H, W): gradient of the head's sum */
+    double *sums;               /* (C, 2) of the layer that ends the section */
+    double *weights;            /* gradient of the weights of the section's layer or head */
 } ptie_sample_state;
 
 /* Memory of one worker. */
 typedef struct ptie_workspace {
     float *input, *z_grad, *in_grad, *finer; /* blocks of the layouts of bands */
     float *scratch;                          /* of the convolutions */
-    float *estimate, *slope;                 /* (H, W): the output, the gradient of the loss */
+    float *estimate;                         /* (H, W): the output */
     void *loss;
 } ptie_workspace;
 
@@ -35,8 +36,9 @@ struct ptie_stepper {
     ptie_model *model;
     ptie_loss_weights loss;
     int32_t batch, height, width;
-    ptie_layout maps;   /* output channels */
-    ptie_layout coarse; /* what a join reads of the layer before it, before it is upsampled */
+    ptie_layout z;         /* output channels */
+    ptie_layout gradients; /* the same, but the last layer's are made when needed */
+    ptie_layout coarse;    /* what a join reads of the layer before it, before it is upsampled */
     /* Bands: what a layer reads and the gradient of its z, with a row more above and below; the
        gradient of what it reads; what a pool reads. */
     ptie_layout input, z_grad, in_grad, finer;
@@ -98,6 +100,10 @@ void ptie_dropout(const ptie_stepper *stepper, const ptie_map *map, size_t sampl
 ptie_status ptie_forward_layer(void *context, size_t sample, int32_t worker);
 void ptie_forward_join(ptie_stepper *stepper);
 ptie_status ptie_head(void *context, size_t sample, int32_t worker); /* forward, loss, backward */
+/* Gradient behind the last layer's ReLU, rows first .., from the sample's slope: cheaper to make
+   again than to keep. */
+void ptie_head_gradient(const ptie_stepper *stepper, const ptie_sample_state *sample,
+                        const ptie_map *grad, int32_t first);
 void ptie_head_join(ptie_stepper *stepper);
 ptie_status ptie_backward_layer(void *context, size_t sample, int32_t worker);
 void ptie_backward_join(ptie_stepper *stepper);

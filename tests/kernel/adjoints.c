@@ -190,8 +190,9 @@ static void check_normalise(const ptie_kernels *kernels, ptie_random *random) {
     for (int i = 0; i < COUNT; i++) {
         z64[i] = (double)*block_pixel(&z, 0, i / WIDTH, i % WIDTH);
         r64[i] = (double)*block_pixel(&g, 0, i / WIDTH, i % WIDTH);
+        sums[0] += z64[i];
+        sums[1] += z64[i] * z64[i];
     }
-    kernels->moments(sums, &z.map);
     mean = sums[0] / COUNT;
     inverse_std = 1 / sqrt(sums[1] / COUNT - mean * mean + 1e-3);
     ptie_norm norm = {.scale = (float)(gamma * inverse_std),

@@ -2,17 +2,6 @@
 /* BatchNorm with ReLU, docs/math.md (N2), (N3). */
 #include "kernel/scalar/scalar.h"
 
-void ptie_moments_scalar(double *sums, const ptie_map *z) {
-    for (int32_t c = 0; c < z->channels; c++)
-        for (int32_t y = 0; y < z->height; y++) {
-            const float *row = row_of(z, c, y);
-            for (int32_t x = 0; x < z->width; x++) {
-                sums[2 * c] += (double)row[x];
-                sums[2 * c + 1] += (double)row[x] * (double)row[x];
-            }
-        }
-}
-
 void ptie_normalise_scalar(const ptie_map *out, const ptie_map *z, const ptie_norm *norms) {
     for (int32_t c = 0; c < z->channels; c++)
         for (int32_t y = 0; y < z->height; y++) {

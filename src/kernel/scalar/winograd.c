@@ -37,7 +37,7 @@ static void multiply_parts(float sums[PARTS], const ptie_map *in, const float *w
 }
 
 void ptie_winograd3x3_scalar(const ptie_map *out, const ptie_map *in, const float *weights,
-                             const float *bias, bool relu, float *scratch) {
+                             const float *bias, bool relu, double *moments, float *scratch) {
     static const float matrix[ROWS][PARTS] = {
         {1, 1, 1, 1, 1, 0}, {0, 1, -1, 2, -2, 0}, {0, 1, 1, 4, 4, 0}, {0, 1, -1, 8, -8, 1}};
     (void)scratch;
@@ -49,7 +49,11 @@ void ptie_winograd3x3_scalar(const ptie_map *out, const ptie_map *in, const floa
                 for (int r = 0; r < ROWS && y + r < out->height; r++) {
                     float value = bias ? bias[o] : 0;
                     for (int part = 0; part < PARTS; part++) value += matrix[r][part] * sums[part];
-                    row_of(out, o, y + r)[x] = relu && !(value > 0) ? 0 : value;
+                    value = relu && !(value > 0) ? 0 : value;
+                    row_of(out, o, y + r)[x] = value;
+                    if (!moments) continue;
+                    moments[2 * o] += (double)value;
+                    moments[2 * o + 1] += (double)value * (double)value;
                 }
             }
 }

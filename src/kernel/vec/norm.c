@@ -6,23 +6,6 @@
 /* Rows summed in single precision before they go on in double. */
 enum { SUM_ROWS = 4 };
 
-void VEC(moments)(double *sums, const ptie_map *z) {
-    for (int32_t c = 0; c < z->channels; c++)
-        for (int32_t y = 0; y < z->height; y += SUM_ROWS) {
-            vf sum = {0}, squares = {0};
-            for (int32_t r = y; r < smaller(y + SUM_ROWS, z->height); r++) {
-                const float *row = row_of(z, c, r);
-                for (int32_t x = 0; x < z->width; x += VEC_WIDTH) {
-                    const vf value = vf_first(vf_load(row + x), z->width - x);
-                    sum += value;
-                    squares += value * value;
-                }
-            }
-            sums[2 * c] += vf_sum(sum);
-            sums[2 * c + 1] += vf_sum(squares);
-        }
-}
-
 void VEC(normalise)(const ptie_map *out, const ptie_map *z, const ptie_norm *norms) {
     for (int32_t c = 0; c < z->channels; c++) {
         const vf scale = vf_splat(norms[c].scale), shift = vf_splat(norms[c].shift);

@@ -7,6 +7,10 @@
 #ifndef PTIE_KERNEL_VEC_H
 #define PTIE_KERNEL_VEC_H
 
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
 #include "kernel/kernel.h"
 
 #define PTIE_VEC_PASTE_(name, level) ptie_##name##_##level
@@ -38,6 +42,27 @@ INLINE vf vf_load(const float *from) {
 
 INLINE void vf_store(float *to, vf value) {
     *(vf_anywhere *)(void *)to = value;
+}
+
+/* Past the caches where the place is aligned; before others may read it, vf_stream_end. */
+INLINE void vf_stream(float *to, vf value) {
+    if ((uintptr_t)to % sizeof(vf) != 0) {
+        vf_store(to, value);
+        return;
+    }
+#if defined __AVX512F__
+    _mm512_stream_ps(to, (__m512)value);
+#elif defined __AVX__
+    _mm256_stream_ps(to, (__m256)value);
+#else
+    vf_store(to, value);
+#endif
+}
+
+INLINE void vf_stream_end(void) {
+#if defined __AVX__
+    _mm_sfence();
+#endif
 }
 
 /* The end of a row; out of line, to leave the registers of the loop alone. */

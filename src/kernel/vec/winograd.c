@@ -98,33 +98,60 @@ typedef struct target {
     int32_t first, y, x;
     const float *bias;
     bool relu;
+    double *moments;
 } target;
 
-INLINE void store_strip(const target *out, const float *sums, const int vectors) {
+/* A row of a strip, and its part in the sums. */
+INLINE void store_row(const target *out, float *to, vf value, int32_t left, vf *sum, vf *squares) {
+    if (!out->moments) {
+        vf_store_first(to, value, left);
+        return;
+    }
+    value = vf_first(value, left);
+    *sum += value;
+    *squares += value * value;
+    if (left >= VEC_WIDTH)
+        vf_stream(to, value);
+    else
+        vf_store_first(to, value, left);
+}
+
+/* sums: of the OUT channels, then of their squares. */
+INLINE void store_strip(const target *out, const float *parts, const int vectors,
+                        vf sums[2 * OUT]) {
     const ptie_map *map = out->map;
     const int32_t channels = smaller(map->channels - out->first, OUT);
     const int32_t rows = smaller(map->height - out->y, ROWS);
     for (int32_t o = 0; o < channels; o++)
         UNROLL (v, vectors) {
             vf row[ROWS];
-            join_parts(row, sums + o * BLOCK + v * VEC_WIDTH);
+            join_parts(row, parts + o * BLOCK + v * VEC_WIDTH);
             const int32_t x = out->x + v * VEC_WIDTH, left = map->width - x;
             const vf bias = vf_splat(out->bias ? out->bias[out->first + o] : 0);
             float *to = row_of(map, out->first + o, out->y) + x;
             UNROLL (r, ROWS) {
                 const vf value = out->relu ? vf_positive(row[r] + bias) : row[r] + bias;
-                if (r < rows && left > 0) vf_store_first(to + r * map->row, value, left);
+                if (r < rows && left > 0)
+                    store_row(out, to + r * map->row, value, left, &sums[o], &sums[OUT + o]);
             }
         }
 }
 
 INLINE void convolve_block(const target *out, const tile *input, int32_t x, const float *weights,
-                           const int vectors) {
-    float sums[PARTS * OUT * BLOCK] __attribute__((aligned(64)));
+                           const int vectors, vf sums[2 * OUT]) {
+    float parts[PARTS * OUT * BLOCK] __attribute__((aligned(64)));
     for (int part = 0; part < PARTS; part++)
-        multiply_part(sums + part * OUT * BLOCK, input, part, x,
+        multiply_part(parts + part * OUT * BLOCK, input, part, x,
                       weights + part * input->channels * 3 * PTIE_CONV_BLOCK, vectors);
-    store_strip(out, sums, vectors);
+    store_strip(out, parts, vectors, sums);
+}
+
+static void add_moments(const target *out, vf sums[2 * OUT]) {
+    const vf totals = vf_fold(sums); /* OUT is half a vector */
+    for (int32_t o = 0; o < smaller(out->map->channels - out->first, OUT); o++) {
+        out->moments[2 * (out->first + o)] += (double)totals[o];
+        out->moments[2 * (out->first + o) + 1] += (double)totals[OUT + o];
+    }
 }
 
 static void convolve_tile(target out, const tile *input, int32_t width, const float *weights) {
@@ -133,18 +160,20 @@ static void convolve_tile(target out, const tile *input, int32_t width, const fl
     for (out.first = 0; out.first < out.map->channels; out.first += OUT) {
         const float *block =
             weights + out.first / PTIE_CONV_BLOCK * block_floats + out.first % PTIE_CONV_BLOCK;
+        vf sums[2 * OUT] = {{0}};
         int32_t x = 0;
         for (; x + VEC_WIDTH < width; x += BLOCK) {
             out.x = left + x;
-            convolve_block(&out, input, x, block, PIXELS);
+            convolve_block(&out, input, x, block, PIXELS, sums);
         }
         out.x = left + x;
-        if (x < width) convolve_block(&out, input, x, block, 1);
+        if (x < width) convolve_block(&out, input, x, block, 1, sums);
+        if (out.moments) add_moments(&out, sums);
     }
 }
 
 void VEC(winograd3x3)(const ptie_map *out, const ptie_map *in, const float *weights,
-                      const float *bias, bool relu, float *scratch) {
+                      const float *bias, bool relu, double *moments, float *scratch) {
     const tile input = {scratch, TILE + 2 * VEC_WIDTH, in->channels};
     for (int32_t y = 0; y < out->height; y += ROWS)
         for (int32_t x = 0; x < out->width; x += TILE) {
@@ -152,8 +181,9 @@ void VEC(winograd3x3)(const ptie_map *out, const ptie_map *in, const float *weig
             for (int32_t i = 0; i < in->channels; i++)
                 transform_input(scratch + i * PARTS * input.step, input.step, in, i, y, x,
                                 (width + BLOCK - 1) / BLOCK * BLOCK);
-            convolve_tile((target){out, 0, y, x, bias, relu}, &input, width, weights);
+            convolve_tile((target){out, 0, y, x, bias, relu, moments}, &input, width, weights);
         }
+    if (moments) vf_stream_end();
 }
 
 /* Gradient of the weights: the same filtering turned round, 3 taps from 4 rows. */
@@ -180,7 +210,10 @@ static slab slab_shape(int32_t height, int32_t width) {
 INLINE void transform_gradient(float *to, ptrdiff_t part, const float *const row[ROWS], int32_t x,
                                int32_t count) {
     vf g[ROWS];
-    UNROLL (r, ROWS) g[r] = vf_first(vf_load(row[r] + x), count);
+    UNROLL (r, ROWS) {
+        g[r] = vf_load(row[r] + x);
+        if (count < VEC_WIDTH) g[r] = vf_first(g[r], count);
+    }
     const vf even1 = g[0] + g[2], odd1 = g[1] + g[3];
     const vf even2 = g[0] + vf_splat(4) * g[2], odd2 = vf_splat(2) * g[1] + vf_splat(8) * g[3];
     vf_store(to + x, g[0]);
