@@ -61,13 +61,13 @@ static void conv3x3_input(const ptie_kernels *k, const maps *m) {
     k->conv3x3(&m->in, &m->out, m->adjoint, NULL, false);
 }
 static void winograd3x3(const ptie_kernels *k, const maps *m) {
-    k->winograd3x3(&m->out, &m->in, m->parts, m->bias, true, NULL, m->scratch);
+    k->winograd3x3(&m->out, &m->in, m->parts, m->bias, true, NULL, m->scratch, NULL);
 }
 static void winograd3x3_input(const ptie_kernels *k, const maps *m) {
-    k->winograd3x3(&m->in, &m->out, m->parts_adjoint, NULL, false, NULL, m->scratch);
+    k->winograd3x3(&m->in, &m->out, m->parts_adjoint, NULL, false, NULL, m->scratch, NULL);
 }
 static void conv3x3_weights(const ptie_kernels *k, const maps *m) {
-    k->conv3x3_weights(m->sums, &m->out, &m->in, m->scratch);
+    k->conv3x3_weights(m->sums, &m->out, &m->in, m->scratch, NULL);
 }
 static void conv1x1(const ptie_kernels *k, const maps *m) {
     k->conv1x1(&m->out, &m->in, m->weights, m->bias);
@@ -76,7 +76,7 @@ static void conv1x1_weights(const ptie_kernels *k, const maps *m) {
     k->conv1x1_weights(m->sums, m->sums + m->in.channels * m->out.channels, &m->out, &m->in);
 }
 static void winograd3x3_moments(const ptie_kernels *k, const maps *m) {
-    k->winograd3x3(&m->out, &m->in, m->parts, NULL, false, m->sums, m->scratch);
+    k->winograd3x3(&m->out, &m->in, m->parts, NULL, false, m->sums, m->scratch, NULL);
 }
 static void normalise(const ptie_kernels *k, const maps *m) {
     k->normalise(&m->out, &m->in, m->norms);

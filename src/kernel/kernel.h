@@ -41,6 +41,13 @@ void ptie_map_clear_halo(const ptie_map *map);
 void ptie_map_load(const ptie_map *map, const float *image);
 void ptie_map_store(float *image, const ptie_map *map);
 
+/* Maps that will be read next.  A kernel that computes for long asks memory for them on the way, a
+   little at a time, so that they wait in the second-level cache. */
+typedef struct ptie_ahead {
+    const ptie_map *maps;
+    int32_t count;
+} ptie_ahead;
+
 /* BatchNorm of one channel, (N2) and (N3): out = max(0, scale * z + shift). */
 typedef struct ptie_norm {
     float scale, shift;      /* gamma / std, beta - mean * scale */

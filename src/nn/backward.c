@@ -49,8 +49,10 @@ static void clear_map(const ptie_map *map) {
 /* Gradient of what the band's layer reads (N1), into `to`. */
 static void unconvolve(const ptie_stepper *stepper, const ptie_band *band, const ptie_map *to,
                        const ptie_map *z_grad) {
+    ptie_next next;
     stepper->engine->kernels->winograd3x3(to, z_grad, stepper->packed_adjoint[band->layer], NULL,
-                                          false, NULL, band->workspace->scratch);
+                                          false, NULL, band->workspace->scratch,
+                                          ptie_next_input(stepper, *band, &next));
 }
 
 static ptie_map unconvolve_aside(const ptie_stepper *stepper, const ptie_band *band,
@@ -90,8 +92,10 @@ static void unconvolve_band(const ptie_stepper *stepper, const ptie_band *band) 
     const int32_t before = band->layer - 1;
     const ptie_map z_grad = z_gradient(stepper, band);
     const ptie_map in = ptie_band_input(stepper, band);
+    ptie_next next;
     stepper->engine->kernels->conv3x3_weights(band->sample->weights, &z_grad, &in,
-                                              band->workspace->scratch);
+                                              band->workspace->scratch,
+                                              ptie_next_gradient(stepper, *band, &next));
     switch (stepper->model->graph.layers[band->layer].input) {
     case PTIE_INPUT_IMAGE: break; /* nobody asks */
     case PTIE_INPUT_SAME: {

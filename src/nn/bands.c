@@ -105,3 +105,34 @@ ptie_map ptie_band_input(const ptie_stepper *stepper, const ptie_band *band) {
     }
     return ptie_map_rows(padded, 1, band->rows);
 }
+
+/* z of what a band reads. */
+static ptie_map source(const ptie_stepper *stepper, const ptie_band *band) {
+    const ptie_layer *layer = &stepper->model->graph.layers[band->layer];
+    switch (layer->input) {
+    case PTIE_INPUT_POOL:
+        return ptie_z_rows(stepper, band->sample, band->layer - 1, 2 * band->first, 2 * band->rows);
+    case PTIE_INPUT_JOIN:
+        return ptie_z_rows(stepper, band->sample, layer->skip, band->first, band->rows);
+    default: return ptie_z_rows(stepper, band->sample, band->layer - 1, band->first, band->rows);
+    }
+}
+
+const ptie_ahead *ptie_next_input(const ptie_stepper *stepper, ptie_band band, ptie_next *next) {
+    next->ahead = (ptie_ahead){next->maps, 0};
+    ptie_band_next(stepper, &band);
+    if (band.rows > 0 && band.layer > 0) next->maps[next->ahead.count++] = source(stepper, &band);
+    return &next->ahead;
+}
+
+const ptie_ahead *ptie_next_gradient(const ptie_stepper *stepper, ptie_band band, ptie_next *next) {
+    const int32_t k = band.layer;
+    next->ahead = (ptie_ahead){next->maps, 0};
+    ptie_band_next(stepper, &band);
+    if (band.rows == 0) return &next->ahead;
+    next->maps[next->ahead.count++] = ptie_z_rows(stepper, band.sample, k, band.first, band.rows);
+    if (k < stepper->model->graph.layer_count - 1)
+        next->maps[next->ahead.count++] =
+            ptie_gradient_rows(stepper, band.sample, k, band.first, band.rows);
+    return &next->ahead;
+}

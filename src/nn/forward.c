@@ -53,8 +53,9 @@ ptie_status ptie_forward_layer(void *context, size_t index, int32_t worker) {
     for (; band.rows > 0; ptie_band_next(stepper, &band)) {
         const ptie_map in = ptie_band_input(stepper, &band);
         const ptie_map z = ptie_z_rows(stepper, band.sample, k, band.first, band.rows);
+        ptie_next next;
         kernels->winograd3x3(&z, &in, stepper->packed[k], NULL, false, sums,
-                             band.workspace->scratch);
+                             band.workspace->scratch, ptie_next_input(stepper, band, &next));
     }
     return PTIE_OK;
 }

@@ -25,7 +25,7 @@ static size_t most_channels(const ptie_graph *graph) {
 /* Rows of a band: as many as keep what it touches in the second-level cache, a multiple of the
    convolution's strips. */
 static int32_t band_rows(const ptie_layer *layer, int32_t height, int32_t width) {
-    const int64_t cache_floats = 192 * 1024, strip = PTIE_WINOGRAD_ROWS;
+    const int64_t cache_floats = 96 * 1024, strip = PTIE_WINOGRAD_ROWS;
     const int64_t row = (int64_t)(2 * layer->in_channels + layer->out_channels) * width;
     const int64_t fits = cache_floats / row / strip * strip;
     return (int32_t)(fits < strip ? strip : fits < height ? fits : height);

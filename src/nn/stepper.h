@@ -82,6 +82,14 @@ ptie_map ptie_gradient_rows(const ptie_stepper *stepper, const ptie_sample_state
 
 /* What the band's layer reads; the rows above and below it are there too (0 beyond the image). */
 ptie_map ptie_band_input(const ptie_stepper *stepper, const ptie_band *band);
+/* What the band after this one is made of: z of what it reads, or its own z and gradient.  Nothing
+   behind the last one. */
+typedef struct ptie_next {
+    ptie_map maps[2];
+    ptie_ahead ahead;
+} ptie_next;
+const ptie_ahead *ptie_next_input(const ptie_stepper *stepper, ptie_band band, ptie_next *next);
+const ptie_ahead *ptie_next_gradient(const ptie_stepper *stepper, ptie_band band, ptie_next *next);
 /* What a pool read of the layer before, rows 2 first .. of it; after ptie_band_input. */
 ptie_map ptie_band_finer(const ptie_stepper *stepper, const ptie_band *band);
 

@@ -153,8 +153,8 @@ static void convolve(stream *s, int32_t layer, int32_t first, int32_t rows) {
     const ptie_map in = view(s, layer, 0, l->in_channels, first, rows);
     clear_halo(&out, first, rows_of(s, layer));
     if (plan->filtered[layer])
-        plan->kernels->winograd3x3(&out, &in, plan->packed[layer], plan->bias[layer], true,
-                                   s->filter);
+        plan->kernels->winograd3x3(&out, &in, plan->packed[layer], plan->bias[layer], true, NULL,
+                                   s->filter, NULL);
     else
         plan->kernels->conv3x3(&out, &in, plan->packed[layer], plan->bias[layer], true);
 }

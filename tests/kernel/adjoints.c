@@ -44,7 +44,7 @@ static void check_conv3x3(const ptie_kernels *kernels, ptie_random *random) {
     /* The convolution is linear in its weights too: <A_w x, y> = <w, gradient>. */
     double gradient[OUT * IN * 9] = {0}, product = 0;
     float *scratch = malloc(ptie_winograd_scratch(OUT, IN) * sizeof *scratch);
-    kernels->conv3x3_weights(gradient, &y.map, &x.map, scratch);
+    kernels->conv3x3_weights(gradient, &y.map, &x.map, scratch, NULL);
     free(scratch);
     for (int i = 0; i < OUT * IN * 9; i++) product += gradient[i] * (double)weights[i];
     assert_near(product, block_dot(&ax, &y), 3e-8 * sqrt(block_dot(&ax, &ax) * block_dot(&y, &y)));

@@ -160,7 +160,7 @@ static void check_moments(twin *t, block *found, const block *in, const float *p
     const size_t count = 2 * (size_t)t->out_channels;
     double *sums = calloc(3 * count, sizeof *sums), *exact = sums + count, *size = exact + count;
     for (size_t i = 0; i < count; i++) sums[i] = exact[i] = 0.5; /* it adds */
-    t->kernels->winograd3x3(&found->map, &in->map, packed, NULL, false, NULL, scratch);
+    t->kernels->winograd3x3(&found->map, &in->map, packed, NULL, false, NULL, scratch, NULL);
     block streamed = block_copy(found);
     for (int32_t c = 0; c < t->out_channels; c++)
         for (int32_t y = 0; y < t->height; y++)
@@ -170,7 +170,7 @@ static void check_moments(twin *t, block *found, const block *in, const float *p
                 exact[2 * c + 1] += value * value, size[2 * c + 1] += value * value;
                 *block_pixel(&streamed, c, y, x) = 0;
             }
-    t->kernels->winograd3x3(&streamed.map, &in->map, packed, NULL, false, sums, scratch);
+    t->kernels->winograd3x3(&streamed.map, &in->map, packed, NULL, false, sums, scratch, NULL);
     compare(t, &streamed, found, NULL, 0, NULL, "winograd3x3, streamed");
     compare_sums(t, sums, exact, size, gamma_n(lane_terms(t, 4)), count, "winograd3x3, moments");
     block_free(&streamed);
@@ -198,8 +198,10 @@ static void test_winograd3x3(twin *t) {
     const double factor = 2 * gamma_n(3 * t->in_channels + 14);
     for (int variant = 0; variant < 3; variant++) {
         const float *used = variant ? bias : NULL;
-        t->kernels->winograd3x3(&found.map, &in.map, packed, used, variant == 2, NULL, scratch);
-        t->scalar->winograd3x3(&expected.map, &in.map, packed, used, variant == 2, NULL, scratch);
+        t->kernels->winograd3x3(&found.map, &in.map, packed, used, variant == 2, NULL, scratch,
+                                NULL);
+        t->scalar->winograd3x3(&expected.map, &in.map, packed, used, variant == 2, NULL, scratch,
+                               NULL);
         compare(t, &found, &expected, &magnitude, factor, NULL, "winograd3x3");
         t->scalar->conv3x3(&expected.map, &in.map, direct, used, variant == 2);
         compare(t, &found, &expected, &magnitude, factor + 2 * gamma_n(9 * t->in_channels), NULL,
@@ -241,8 +243,8 @@ static void test_conv3x3_weights(twin *t) {
         const int32_t o = (int32_t)i / 9 / inputs, c = (int32_t)i / 9 % inputs;
         sums[2 * count + i] = gradient_magnitude(&g_abs, &in_abs, o, c, (int32_t)i % 9);
     }
-    t->kernels->conv3x3_weights(sums, &g.map, &in.map, scratch);
-    t->scalar->conv3x3_weights(sums + count, &g.map, &in.map, scratch);
+    t->kernels->conv3x3_weights(sums, &g.map, &in.map, scratch, NULL);
+    t->scalar->conv3x3_weights(sums + count, &g.map, &in.map, scratch, NULL);
     /* 6 + 4 roundings of the transforms, then the lanes. */
     compare_sums(t, sums, sums + count, sums + 2 * count,
                  gamma_n(10 + lane_terms(t, (t->height + 3) / 4)), count, "conv3x3_weights");

@@ -37,8 +37,8 @@ void ptie_conv3x3_scalar(const ptie_map *out, const ptie_map *in, const float *w
 }
 
 void ptie_conv3x3_weights_scalar(double *grad, const ptie_map *out_grad, const ptie_map *in,
-                                 float *scratch) {
-    (void)scratch;
+                                 float *scratch, const ptie_ahead *ahead) {
+    (void)scratch, (void)ahead;
     for (int32_t o = 0; o < out_grad->channels; o++)
         for (int32_t i = 0; i < in->channels; i++)
             for (int ky = -1; ky <= 1; ky++)

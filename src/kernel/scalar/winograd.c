@@ -37,10 +37,11 @@ static void multiply_parts(float sums[PARTS], const ptie_map *in, const float *w
 }
 
 void ptie_winograd3x3_scalar(const ptie_map *out, const ptie_map *in, const float *weights,
-                             const float *bias, bool relu, double *moments, float *scratch) {
+                             const float *bias, bool relu, double *moments, float *scratch,
+                             const ptie_ahead *ahead) {
     static const float matrix[ROWS][PARTS] = {
         {1, 1, 1, 1, 1, 0}, {0, 1, -1, 2, -2, 0}, {0, 1, 1, 4, 4, 0}, {0, 1, -1, 8, -8, 1}};
-    (void)scratch;
+    (void)scratch, (void)ahead;
     for (int32_t o = 0; o < out->channels; o++)
         for (int32_t y = 0; y < out->height; y += ROWS)
             for (int32_t x = 0; x < out->width; x++) {

@@ -24,6 +24,48 @@ enum {
 };
 enum { TILE = 128 };
 
+/* Where a kernel is in what it asks memory for, in lines of 64 bytes. */
+typedef struct cursor {
+    const ptie_map *map, *end;
+    int32_t channel;
+    const char *at, *stop; /* of the channel */
+    int32_t lines;         /* per call of fetch_some */
+} cursor;
+
+static void next_channel(cursor *c) {
+    if (c->at && ++c->channel == c->map->channels) c->map++, c->channel = 0;
+    if (c->map == c->end) {
+        c->lines = 0;
+        return;
+    }
+    c->at = (const char *)row_of(c->map, c->channel, 0);
+    c->stop = (const char *)row_of(c->map, c->channel, c->map->height);
+}
+
+/* In `calls` calls of fetch_some everything is asked for. */
+static cursor cursor_start(const ptie_ahead *ahead, int64_t calls) {
+    cursor c = {0};
+    if (!ahead || ahead->count == 0) return c;
+    int64_t lines = 0;
+    for (int32_t i = 0; i < ahead->count; i++) {
+        const ptie_map *map = &ahead->maps[i];
+        lines += map->channels * (map->height * map->row / 16 + 1);
+    }
+    c = (cursor){.map = ahead->maps,
+                 .end = ahead->maps + ahead->count,
+                 .lines = (int32_t)((lines + calls - 1) / calls)};
+    next_channel(&c);
+    return c;
+}
+
+INLINE void fetch_some(cursor *c) {
+    for (int32_t i = 0; i < c->lines; i++) {
+        __builtin_prefetch(c->at, 0, 2);
+        c->at += 64;
+        if (c->at >= c->stop) next_channel(c);
+    }
+}
+
 /* Six input rows -> six transformed rows, (N9) B'. */
 INLINE void transform_pixels(float *to, ptrdiff_t step, const float *const row[PARTS], int32_t x) {
     vf d[PARTS];
@@ -99,6 +141,7 @@ typedef struct target {
     const float *bias;
     bool relu;
     double *moments;
+    cursor *ahead;
 } target;
 
 /* A row of a strip, and its part in the sums. */
@@ -140,9 +183,11 @@ INLINE void store_strip(const target *out, const float *parts, const int vectors
 INLINE void convolve_block(const target *out, const tile *input, int32_t x, const float *weights,
                            const int vectors, vf sums[2 * OUT]) {
     float parts[PARTS * OUT * BLOCK] __attribute__((aligned(64)));
-    for (int part = 0; part < PARTS; part++)
+    for (int part = 0; part < PARTS; part++) {
         multiply_part(parts + part * OUT * BLOCK, input, part, x,
                       weights + part * input->channels * 3 * PTIE_CONV_BLOCK, vectors);
+        fetch_some(out->ahead);
+    }
     store_strip(out, parts, vectors, sums);
 }
 
@@ -172,16 +217,25 @@ static void convolve_tile(target out, const tile *input, int32_t width, const fl
     }
 }
 
+static int32_t parts_of(int32_t count, int32_t size) {
+    return (count + size - 1) / size;
+}
+
 void VEC(winograd3x3)(const ptie_map *out, const ptie_map *in, const float *weights,
-                      const float *bias, bool relu, double *moments, float *scratch) {
+                      const float *bias, bool relu, double *moments, float *scratch,
+                      const ptie_ahead *ahead) {
     const tile input = {scratch, TILE + 2 * VEC_WIDTH, in->channels};
+    cursor next =
+        cursor_start(ahead, (int64_t)PARTS * parts_of(out->height, ROWS) *
+                                parts_of(out->channels, OUT) * parts_of(out->width, BLOCK));
     for (int32_t y = 0; y < out->height; y += ROWS)
         for (int32_t x = 0; x < out->width; x += TILE) {
             const int32_t width = smaller(out->width - x, TILE);
             for (int32_t i = 0; i < in->channels; i++)
                 transform_input(scratch + i * PARTS * input.step, input.step, in, i, y, x,
-                                (width + BLOCK - 1) / BLOCK * BLOCK);
-            convolve_tile((target){out, 0, y, x, bias, relu, moments}, &input, width, weights);
+                                parts_of(width, BLOCK) * BLOCK);
+            convolve_tile((target){out, 0, y, x, bias, relu, moments, &next}, &input, width,
+                          weights);
         }
     if (moments) vf_stream_end();
 }
@@ -252,7 +306,7 @@ static void transform_inputs(float *to, const ptie_map *in, const slab *at) {
 /* Sums over a slab, for OUT output channels, one input channel and one part, of the products
    under the 3 taps.  Channels that do not exist repeat the last one. */
 static void weigh_slab(float sums[OUT * 3], const float *gradient, int32_t channels,
-                       const float *input, const slab *at) {
+                       const float *input, const slab *at, cursor *ahead) {
     const float *row[OUT];
     for (int32_t o = 0; o < OUT; o++) row[o] = gradient + smaller(o, channels - 1) * at->floats;
     vf sum[OUT * 3];
@@ -267,6 +321,7 @@ static void weigh_slab(float sums[OUT * 3], const float *gradient, int32_t chann
                 UNROLL (k, 3) sum[o * 3 + k] += g * pixel[k];
             }
         }
+        fetch_some(ahead);
     }
     vf_sums(sums, sum, OUT * 3);
 }
@@ -286,24 +341,28 @@ static void join_weights(double *grad, const float *sums, ptrdiff_t part) {
 
 /* One block of output channels: sums (PARTS, in, OUT, 3), then their joining. */
 static void weigh_block(double *grad, int32_t channels, int32_t in_channels, const float *gradient,
-                        ptrdiff_t gradient_part, const float *input, float *sums, const slab *at) {
+                        ptrdiff_t gradient_part, const float *input, float *sums, const slab *at,
+                        cursor *ahead) {
     const ptrdiff_t part = (ptrdiff_t)in_channels * OUT * 3;
     for (int j = 0; j < PARTS; j++)
         for (int32_t i = 0; i < in_channels; i++)
             weigh_slab(sums + j * part + i * OUT * 3, gradient + j * gradient_part, channels,
-                       input + (j * in_channels + i) * at->floats, at);
+                       input + (j * in_channels + i) * at->floats, at, ahead);
     for (int32_t o = 0; o < channels; o++)
         for (int32_t i = 0; i < in_channels; i++)
             join_weights(grad + (o * in_channels + i) * 9, sums + (i * OUT + o) * 3, part);
 }
 
 void VEC(conv3x3_weights)(double *grad, const ptie_map *out_grad, const ptie_map *in,
-                          float *scratch) {
+                          float *scratch, const ptie_ahead *ahead) {
     const int32_t inputs = in->channels, outputs = out_grad->channels;
     slab at = slab_shape(out_grad->height, out_grad->width);
     const int32_t most_strips = at.strips, most_columns = at.width;
     float *gradient = scratch, *input = gradient + PARTS * outputs * at.floats;
     float *sums = input + PARTS * inputs * at.floats;
+    cursor next = cursor_start(ahead, (int64_t)PARTS * inputs * parts_of(outputs, OUT) *
+                                          parts_of(out_grad->height, ROWS) *
+                                          parts_of(out_grad->width, most_columns));
     for (at.y = 0; at.y < out_grad->height; at.y += most_strips * ROWS)
         for (at.x = 0; at.x < out_grad->width; at.x += most_columns) {
             at.strips = smaller((out_grad->height - at.y + ROWS - 1) / ROWS, most_strips);
@@ -312,6 +371,6 @@ void VEC(conv3x3_weights)(double *grad, const ptie_map *out_grad, const ptie_map
             transform_inputs(input, in, &at);
             for (int32_t o = 0; o < outputs; o += OUT)
                 weigh_block(grad + (ptrdiff_t)o * inputs * 9, smaller(outputs - o, OUT), inputs,
-                            gradient + o * at.floats, outputs * at.floats, input, sums, &at);
+                            gradient + o * at.floats, outputs * at.floats, input, sums, &at, &next);
         }
 }
