@@ -6,6 +6,10 @@
 #include <string.h>
 #include <sys/utsname.h>
 
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <cpuid.h>
+#endif
+
 #include "base/text.h"
 
 static const char *const names[] = {"scalar", "avx2", "avx512", NULL};
@@ -24,6 +28,17 @@ ptie_cpu_level ptie_cpu_detect(void) {
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return PTIE_CPU_AVX2;
 #endif
     return PTIE_CPU_SCALAR;
+}
+
+bool ptie_cpu_has_half(void) {
+#if defined(__x86_64__) && defined(__GNUC__)
+    /* Asked directly: not every compiler's __builtin_cpu_supports knows it. */
+    unsigned eax, ebx, ecx, edx;
+    return ptie_cpu_detect() == PTIE_CPU_AVX512 && __get_cpuid_count(7, 0, &eax, &ebx, &ecx, &edx) &&
+           (edx >> 23 & 1);
+#else
+    return false;
+#endif
 }
 
 void ptie_cpu_describe(char *text, size_t bytes) {

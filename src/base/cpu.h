@@ -3,6 +3,8 @@
 #ifndef PTIE_BASE_CPU_H
 #define PTIE_BASE_CPU_H
 
+#include <stdbool.h>
+
 #include "base/status.h"
 
 typedef enum ptie_cpu_level {
@@ -14,6 +16,8 @@ typedef enum ptie_cpu_level {
 
 /* Highest level the processor and the operating system support. */
 ptie_cpu_level ptie_cpu_detect(void);
+/* Whether it also computes with halves (AVX512-FP16, beside PTIE_CPU_AVX512). */
+bool ptie_cpu_has_half(void);
 const char *ptie_cpu_name(ptie_cpu_level level);
 /* The processor as it names itself, or its architecture. */
 void ptie_cpu_describe(char *text, size_t bytes);

@@ -13,8 +13,8 @@
 typedef struct group {
     const char *name;
     ptie_status (*run)(ptie_bench *bench);
-    int32_t measurements;   /* so many, unless */
-    int32_t (*count)(void); /* this knows how many */
+    int32_t measurements;                        /* so many, unless */
+    int32_t (*count)(const ptie_engine *engine); /* this knows how many */
 } group;
 
 static const group groups[] = {
@@ -79,7 +79,8 @@ ptie_status ptie_bench_groups(const ptie_engine *engine, const ptie_bench_params
     PTIE_TRY(choose(chosen, params->groups));
     for (int i = 0; i < GROUPS; i++)
         if (chosen[i])
-            bench.total += (size_t)(groups[i].count ? groups[i].count() : groups[i].measurements);
+            bench.total +=
+                (size_t)(groups[i].count ? groups[i].count(engine) : groups[i].measurements);
 
     ptie_status status;
     PTIE_TRY_DONE(

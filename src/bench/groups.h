@@ -9,10 +9,10 @@
 ptie_status ptie_bench_peak(ptie_bench *bench);
 /* Every kernel at the shapes of the paper's network. */
 ptie_status ptie_bench_kernels(ptie_bench *bench);
-int32_t ptie_bench_kernels_count(void);
+int32_t ptie_bench_kernels_count(const ptie_engine *engine);
 /* 3x3 convolutions of other widths. */
 ptie_status ptie_bench_family(ptie_bench *bench);
-int32_t ptie_bench_family_count(void);
+int32_t ptie_bench_family_count(const ptie_engine *engine);
 ptie_status ptie_bench_inference(ptie_bench *bench);
 ptie_status ptie_bench_training(ptie_bench *bench);
 ptie_status ptie_bench_generation(ptie_bench *bench);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The kernels of kernels.inc, one row of a table each: at which shapes, and what one call does.
+/* The kernels of kernels.inc and half_kernels.inc, one row of a table each: at which shapes, and
+ * what one call does.
  *
  * Every thread has maps of its own and calls the kernel on whole maps, of the sizes they have in
  * the paper's network on frames of 256 x 256.  Traffic counts every map once per read and once per
@@ -11,7 +12,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "bench/groups.h"
-#include "kernel/kernel.h"
+#include "kernel/half.h"
 
 typedef struct shape {
     int32_t in, out, side; /* channels; maps of side x side */
@@ -20,6 +21,9 @@ typedef struct shape {
 /* What the kernels work on: `in` (I, S, S), `out` (O, S, S), and at half the size of `out`. */
 typedef struct maps {
     ptie_map in, out, half, half_grad;
+    ptie_map in16, out16, half16; /* the same in half precision */
+    const ptie_half_kernels *kernels16;
+    float *pairs;                           /* weights in the order of conv3x3 there */
     float *weights, *bias;                  /* (O, I, 3, 3); (O) */
     float *packed, *adjoint;                /* weights in the order of conv3x3 ... */
     float *parts, *parts_adjoint, *scratch; /* ... and of winograd3x3 */
@@ -29,12 +33,12 @@ typedef struct maps {
 } maps;
 
 typedef struct kernel_case {
-    const char *kernel; /* name in kernels.inc */
+    const char *kernel; /* name in one of the lists */
     const char *label;
     const shape *shapes;
     int32_t count;
-    int32_t taps;          /* multiply-adds per pixel, input and output channel; or */
-    int32_t in, out, half; /* how often a call reads or writes these maps */
+    int32_t taps;         /* multiply-adds per pixel, input and output channel; or */
+    double in, out, half; /* how often a call reads or writes these maps; as halves: 0.5 */
     void (*call)(const ptie_kernels *kernels, const maps *m);
 } kernel_case;
 
@@ -109,6 +113,29 @@ static void window_adjoint(const ptie_kernels *k, const maps *m) {
     k->window_adjoint(m->image, m->other, m->in.width, m->in.height, taps, m->row);
 }
 
+static void conv3x3_16(const ptie_kernels *k, const maps *m) {
+    (void)k;
+    m->kernels16->conv3x3(&m->out16, &m->in16, m->pairs, m->bias);
+}
+static void conv1x1_16(const ptie_kernels *k, const maps *m) {
+    (void)k;
+    m->kernels16->conv1x1(&m->out, &m->in16, m->weights, m->bias);
+}
+static void maxpool_16(const ptie_kernels *k, const maps *m) {
+    (void)k;
+    m->kernels16->maxpool(&m->half16, &m->in16);
+}
+static void upsample_16(const ptie_kernels *k, const maps *m) {
+    (void)k;
+    m->kernels16->upsample(&m->out16, &m->half16, 0);
+}
+static void narrow_16(const ptie_kernels *k, const maps *m) {
+    (void)k;
+    for (int32_t y = 0; y < m->in.height; y++)
+        m->kernels16->narrow((ptie_half *)(m->in16.data + y * m->in16.row),
+                             m->image + (ptrdiff_t)y * m->in.width, m->in.width);
+}
+
 static const kernel_case kernel_cases[] = {
     {"conv3x3", "3x3", SHAPES(convolutions), .taps = 9, .call = conv3x3},
     {"conv3x3", "3x3 input gradient", convolutions + 1, COUNT(convolutions) - 1, .taps = 9,
@@ -141,6 +168,17 @@ static const kernel_case kernel_cases[] = {
      .call = window_adjoint},
 };
 
+/* Where there is half precision.  Shares are of the peak of single precision. */
+static const kernel_case half_cases[] = {
+    {"conv3x3", "half precision: 3x3", SHAPES(convolutions), .taps = 9, .call = conv3x3_16},
+    {"conv1x1", "half precision: 1x1", SHAPES(head), .in = 0.5, .out = 1, .call = conv1x1_16},
+    {"maxpool", "half precision: max-pool", SHAPES(activation), .in = 0.5, .half = 0.5,
+     .call = maxpool_16},
+    {"upsample", "half precision: upsample", SHAPES(activation), .out = 0.5, .half = 0.5,
+     .call = upsample_16},
+    {"narrow", "half precision: narrow", SHAPES(image), .in = 1, .out = 0.5, .call = narrow_16},
+};
+
 static const kernel_case family_cases[] = {
     {"conv3x3", "3x3", SHAPES(widths), .taps = 9, .call = conv3x3},
     {"winograd3x3", "3x3 Winograd", SHAPES(widths), .taps = 9, .call = winograd3x3},
@@ -149,6 +187,12 @@ static const kernel_case family_cases[] = {
 /* A fresh map in the block; its halo is zero. */
 static ptie_map slice_map(ptie_slicer *slicer, int32_t channels, int32_t side) {
     const ptie_map map = ptie_map_make(channels, side, side);
+    float *block = ptie_slice(slicer, ptie_map_floats(&map), sizeof *block);
+    return block ? ptie_map_in(map, block) : map;
+}
+
+static ptie_map slice_half_map(ptie_slicer *slicer, int32_t channels, int32_t side) {
+    const ptie_map map = ptie_half_map_make(channels, side, side);
     float *block = ptie_slice(slicer, ptie_map_floats(&map), sizeof *block);
     return block ? ptie_map_in(map, block) : map;
 }
@@ -163,6 +207,10 @@ static size_t slice_maps(maps *m, shape s, void *block) {
         .out = slice_map(&slicer, s.out, s.side),
         .half = slice_map(&slicer, s.out, s.side / 2),
         .half_grad = slice_map(&slicer, s.out, s.side / 2),
+        .in16 = slice_half_map(&slicer, s.in, s.side),
+        .out16 = slice_half_map(&slicer, s.out, s.side),
+        .half16 = slice_half_map(&slicer, s.out, s.side / 2),
+        .pairs = ptie_slice(&slicer, ptie_conv3x3_packed(s.out, s.in), sizeof(float)),
         .weights = ptie_slice(&slicer, in * out * 9, sizeof(float)),
         .packed = ptie_slice(&slicer, ptie_conv3x3_packed(s.out, s.in), sizeof(float)),
         .adjoint = ptie_slice(&slicer, ptie_conv3x3_packed(s.in, s.out), sizeof(float)),
@@ -204,6 +252,8 @@ static void fill_maps(maps *m, shape s) {
     for (int32_t c = 0; c < s.out; c++) m->norms[c] = (ptie_norm){.scale = 1, .inverse_std = 1};
     ptie_conv3x3_pack(m->packed, m->weights, s.out, s.in, NULL);
     ptie_conv3x3_pack_adjoint(m->adjoint, m->weights, s.out, s.in);
+    ptie_conv3x3_pack(m->pairs, m->weights, s.out, s.in, NULL);
+    ptie_half_pairs(m->pairs, ptie_conv3x3_packed(s.out, s.in));
     ptie_winograd_pack(m->parts, m->weights, s.out, s.in, NULL);
     ptie_winograd_pack_adjoint(m->parts_adjoint, m->weights, s.out, s.in);
 }
@@ -254,6 +304,7 @@ static ptie_status measure_shape(ptie_bench *bench, const kernel_case *k, shape 
     for (size_t i = 0; i < threads; i++) {
         slice_maps(&r.maps[i], s, block + i * bytes);
         fill_maps(&r.maps[i], s);
+        r.maps[i].kernels16 = ptie_half_kernels_of(bench->engine->level);
     }
     const ptie_bench_case c = describe(k, s, &r);
     status = ptie_bench_measure(bench, &c);
@@ -276,19 +327,26 @@ static int32_t count_all(const kernel_case *cases, int32_t count) {
     return total;
 }
 
-ptie_status ptie_bench_kernels(ptie_bench *bench) {
-    return measure_all(bench, kernel_cases, COUNT(kernel_cases));
+/* How many of half_cases there are. */
+static int32_t half_count(const ptie_engine *engine) {
+    return ptie_half_kernels_of(engine->level) ? COUNT(half_cases) : 0;
 }
 
-int32_t ptie_bench_kernels_count(void) {
-    return count_all(kernel_cases, COUNT(kernel_cases));
+ptie_status ptie_bench_kernels(ptie_bench *bench) {
+    PTIE_TRY(measure_all(bench, kernel_cases, COUNT(kernel_cases)));
+    return measure_all(bench, half_cases, half_count(bench->engine));
+}
+
+int32_t ptie_bench_kernels_count(const ptie_engine *engine) {
+    return count_all(kernel_cases, COUNT(kernel_cases)) + count_all(half_cases, half_count(engine));
 }
 
 ptie_status ptie_bench_family(ptie_bench *bench) {
     return measure_all(bench, family_cases, COUNT(family_cases));
 }
 
-int32_t ptie_bench_family_count(void) {
+int32_t ptie_bench_family_count(const ptie_engine *engine) {
+    (void)engine;
     return count_all(family_cases, COUNT(family_cases));
 }
 

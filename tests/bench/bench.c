@@ -118,7 +118,7 @@ static void lists_of_groups(void **state) {
                                    &results, &count, stop),
                  PTIE_ECANCELLED, "");
     assert_null(results);
-    assert_int_equal(w->total, 3 + ptie_bench_family_count());
+    assert_int_equal(w->total, 3 + ptie_bench_family_count(&w->engine));
     assert_fails(ptie_bench_groups(&w->engine,
                                    &(ptie_bench_params){.groups = "peak,kernel", .seconds = 1e-4},
                                    &results, &count, stop),
