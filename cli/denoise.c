@@ -28,7 +28,7 @@ static int parse(settings *s, int argc, char **argv) {
          .help = "recording to write (.h5, .tif, .npy, .png)"},
         {0, "polarity", OPTION_CHOICE, &s->polarity, "SIGN", .choices = polarities,
          .help = "sign of the flow's phase; auto judges every frame"},
-        {0, "fast", OPTION_FLAG, &s->fast, .help = "minimal filtering; differs in the last digits"},
+        {0, "fast", OPTION_FLAG, &s->fast, .help = "half precision where available; less exact"},
         COMPUTE_OPTIONS(s->compute),
     };
     const command_usage usage = {.name = "denoise",

@@ -67,7 +67,7 @@ static int parse(settings *s, const char *name, bool with_model, int argc, char 
         /* Must stay the first: reconstruct leaves them out. */
         {'m', "model", OPTION_TEXT, &s->model_path, "FILE",
          .help = "denoising network (.safetensors)"},
-        {0, "fast", OPTION_FLAG, &p->fast, .help = "minimal filtering; differs in the last digits"},
+        {0, "fast", OPTION_FLAG, &p->fast, .help = "half precision where available; less exact"},
         {'r', "rig", OPTION_TEXT, &s->rig_path, "FILE", .help = "how the set-up is built (.ini)"},
         {'o', "output", OPTION_TEXT, &p->output, "FILE", .help = "result to write (.h5)"},
         {0, "plus", OPTION_TEXT, &p->plus, "FILE",

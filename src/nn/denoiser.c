@@ -24,6 +24,9 @@ static void fold(ptie_denoiser *denoiser, const ptie_model *model, int32_t k) {
     const float *weights = ptie_model_values(model, layer->params, PTIE_WEIGHT);
     (denoiser->filtered[k] ? ptie_winograd_pack : ptie_conv3x3_pack)(
         denoiser->packed[k], weights, layer->out_channels, layer->in_channels, scale);
+    if (denoiser->half)
+        ptie_half_pairs(denoiser->packed[k],
+                        ptie_conv3x3_packed(layer->out_channels, layer->in_channels));
 }
 
 static size_t slice_block(ptie_denoiser *denoiser, void *block) {
@@ -61,6 +64,11 @@ static void choose_filtering(ptie_denoiser *denoiser) {
     }
 }
 
+ptie_map ptie_denoiser_map(const ptie_denoiser *denoiser, int32_t channels, int32_t height,
+                           int32_t width) {
+    return (denoiser->half ? ptie_half_map_make : ptie_map_make)(channels, height, width);
+}
+
 /* Rows of a layer at a time: as many as keep what it reads and writes near. */
 static int32_t band_rows(const ptie_map *in, const ptie_map *out) {
     enum { NEAR_BYTES = 256 << 10, MOST = 32 };
@@ -89,10 +97,10 @@ static void lay_out(ptie_denoiser *denoiser) {
     for (int32_t k = 0; k < graph->layer_count; k++) {
         const ptie_layer *layer = &graph->layers[k];
         const int32_t width = denoiser->full_width >> layer->level, outlet = denoiser->outlet[k];
-        denoiser->windows[k] = ptie_map_make(layer->in_channels, 0, width);
+        denoiser->windows[k] = ptie_denoiser_map(denoiser, layer->in_channels, 0, width);
         if (outlet >= PTIE_MAX_LAYERS)
-            denoiser->windows[outlet] = ptie_map_make(layer->out_channels, 0, width);
-        const ptie_map out = ptie_map_make(layer->out_channels, 0, width);
+            denoiser->windows[outlet] = ptie_denoiser_map(denoiser, layer->out_channels, 0, width);
+        const ptie_map out = ptie_denoiser_map(denoiser, layer->out_channels, 0, width);
         denoiser->band[k] = band_rows(&denoiser->windows[k], &out);
     }
     const int32_t strips = (denoiser->height + strip - 1) / strip;
@@ -121,7 +129,8 @@ ptie_status ptie_nn_denoiser(ptie_denoiser **out, const ptie_engine *engine,
     denoiser->height = height;
     denoiser->full_width = (width + unit - 1) / unit * unit;
     denoiser->full_height = (height + unit - 1) / unit * unit;
-    if (fast) choose_filtering(denoiser);
+    if (fast) denoiser->half = ptie_half_kernels_of(engine->level);
+    if (fast && !denoiser->half) choose_filtering(denoiser);
     lay_out(denoiser);
     ptie_status status =
         ptie_alloc_status(&denoiser->block, slice_block(denoiser, NULL), 1, "denoiser");

@@ -11,6 +11,7 @@
 #ifndef PTIE_NN_DENOISER_H
 #define PTIE_NN_DENOISER_H
 
+#include "kernel/half.h"
 #include "nn/model.h"
 
 /* A layer reads window `k`.  Where that is of no use to it, it writes to window
@@ -19,7 +20,8 @@ enum { PTIE_MAX_WINDOWS = 2 * PTIE_MAX_LAYERS };
 
 struct ptie_denoiser {
     const ptie_kernels *kernels;
-    ptie_pool *pool; /* whose threads share a frame, or NULL */
+    const ptie_half_kernels *half; /* NULL: maps are of floats, else of halves (N10) */
+    ptie_pool *pool;               /* whose threads share a frame, or NULL */
     ptie_graph graph;
     ptie_output output;
     int32_t width, height;              /* of a frame */
@@ -47,6 +49,9 @@ ptie_denoise_scratch ptie_denoise_slice(const ptie_denoiser *denoiser, void *scr
 ptie_status ptie_denoise_finite(const ptie_denoiser *denoiser, float *clean, const float *noisy,
                                 void *scratch);
 
+/* ptie_map_make of what this denoiser computes with. */
+ptie_map ptie_denoiser_map(const ptie_denoiser *denoiser, int32_t channels, int32_t height,
+                           int32_t width);
 /* Gives the windows their heights: a walk that computes nothing sees how many rows each must hold.
  */
 void ptie_stream_plan(ptie_denoiser *denoiser);

@@ -81,22 +81,26 @@ static void make_room(stream *s, int32_t which, int32_t first, int32_t rows) {
     w->first = from;
 }
 
-/* With the pixel to its left and the one to its right. */
-static void clear_row(const ptie_map *map, int32_t y) {
-    for (int32_t c = 0; c < map->channels; c++)
-        memset(map->data + c * map->plane + y * map->row - 1, 0,
-               (size_t)(map->width + 2) * sizeof *map->data);
+static size_t pixel_bytes(const stream *s) {
+    return s->plan->half ? sizeof(ptie_half) : sizeof(float);
+}
+
+static unsigned char *row_at(const ptie_map *map, int32_t c, int32_t y) {
+    return (unsigned char *)(map->data + c * map->plane + y * map->row);
 }
 
 /* Zeroes the halo around some rows of a level. */
-static void clear_halo(const ptie_map *map, int32_t first, int32_t height) {
-    for (int32_t c = 0; c < map->channels; c++)
+static void clear_halo(const stream *s, const ptie_map *map, int32_t first, int32_t height) {
+    const size_t pixel = pixel_bytes(s), width = (size_t)map->width * pixel;
+    for (int32_t c = 0; c < map->channels; c++) {
         for (int32_t y = -1; y < map->height; y++) {
-            float *row = map->data + c * map->plane + y * map->row;
-            row[map->width] = row[map->row - 1] = 0; /* right of its row, left of the next */
+            memset(row_at(map, c, y) + width, 0, pixel);     /* right of its row, */
+            memset(row_at(map, c, y + 1) - pixel, 0, pixel); /* left of the next */
         }
-    if (first == 0) clear_row(map, -1);
-    if (first + map->height == height) clear_row(map, map->height);
+        if (first == 0) memset(row_at(map, c, -1) - pixel, 0, width + 2 * pixel);
+        if (first + map->height == height)
+            memset(row_at(map, c, map->height) - pixel, 0, width + 2 * pixel);
+    }
 }
 
 /* Index i of a row of n pixels continued by reflection: ... 2 1 [0 1 2 .. n-1] n-2 n-3 ... */
@@ -109,11 +113,16 @@ static int32_t reflect(int32_t i, int32_t n) {
 /* Rows first .. of the frame, padded at the right and at the bottom. */
 static void load(const stream *s, const ptie_map *to, int32_t first) {
     const int32_t width = s->plan->width, height = s->plan->height;
+    const size_t pixel = pixel_bytes(s);
     for (int32_t y = 0; y < to->height; y++) {
         const float *from = s->noisy + (ptrdiff_t)reflect(first + y, height) * width;
-        float *row = to->data + y * to->row;
-        memcpy(row, from, (size_t)width * sizeof *row);
-        for (int32_t x = width; x < to->width; x++) row[x] = from[reflect(x, width)];
+        unsigned char *row = row_at(to, 0, y);
+        if (s->plan->half)
+            s->plan->half->narrow((ptie_half *)row, from, width);
+        else
+            memcpy(row, from, (size_t)width * pixel);
+        for (int32_t x = width; x < to->width; x++)
+            memcpy(row + (size_t)x * pixel, row + (size_t)reflect(x, width) * pixel, pixel);
     }
 }
 
@@ -125,20 +134,21 @@ static void make_input(stream *s, int32_t layer, int32_t first, int32_t rows) {
     make_room(s, layer, first, rows);
     if (s->dry) return;
     const ptie_map to = view(s, layer, 0, before, first, rows);
-    clear_halo(&to, first, rows_of(s, layer));
+    clear_halo(s, &to, first, rows_of(s, layer));
     if (l->input == PTIE_INPUT_IMAGE) {
         load(s, &to, first);
         return;
     }
-    const int32_t outlet = s->plan->outlet[layer - 1];
+    const ptie_denoiser *plan = s->plan;
+    const int32_t outlet = plan->outlet[layer - 1];
     const int32_t channel = s->windows[outlet].map.channels - before;
     if (l->input == PTIE_INPUT_POOL) {
         const ptie_map from = view(s, outlet, channel, before, 2 * first, 2 * rows);
-        s->plan->kernels->maxpool(&to, &from);
+        (plan->half ? plan->half->maxpool : plan->kernels->maxpool)(&to, &from);
     } else {
         const int32_t top = larger(0, first / 2 - 1);
         const ptie_map from = view(s, outlet, channel, before, top, s->done[layer - 1] - top);
-        s->plan->kernels->upsample(&to, &from, first - 2 * top);
+        (plan->half ? plan->half->upsample : plan->kernels->upsample)(&to, &from, first - 2 * top);
     }
 }
 
@@ -151,8 +161,10 @@ static void convolve(stream *s, int32_t layer, int32_t first, int32_t rows) {
     const ptie_map out = view(s, outlet, s->windows[outlet].map.channels - l->out_channels,
                               l->out_channels, first, rows);
     const ptie_map in = view(s, layer, 0, l->in_channels, first, rows);
-    clear_halo(&out, first, rows_of(s, layer));
-    if (plan->filtered[layer])
+    clear_halo(s, &out, first, rows_of(s, layer));
+    if (plan->half)
+        plan->half->conv3x3(&out, &in, plan->packed[layer], plan->bias[layer]);
+    else if (plan->filtered[layer])
         plan->kernels->winograd3x3(&out, &in, plan->packed[layer], plan->bias[layer], true, NULL,
                                    s->filter, NULL);
     else
@@ -202,7 +214,8 @@ static void write_rows(stream *s, int32_t rows) {
     from.width = plan->width; /* the crop */
     const ptie_map to = {
         s->clean + (ptrdiff_t)s->written * plan->width, 1, rows, plan->width, plan->width, 0};
-    plan->kernels->conv1x1(&to, &from, plan->head, plan->head + from.channels);
+    (plan->half ? plan->half->conv1x1 : plan->kernels->conv1x1)(&to, &from, plan->head,
+                                                                plan->head + from.channels);
     if (plan->output == PTIE_SIGMOID) plan->kernels->sigmoid(&to, &to);
 }
 
@@ -257,8 +270,8 @@ void ptie_stream_plan(ptie_denoiser *denoiser) {
     for (int32_t i = 0; i < PTIE_MAX_WINDOWS; i++) {
         const ptie_map map = denoiser->windows[i];
         if (map.channels > 0)
-            denoiser->windows[i] =
-                ptie_map_make(map.channels, s.windows[i].most + spare_rows(denoiser), map.width);
+            denoiser->windows[i] = ptie_denoiser_map(
+                denoiser, map.channels, s.windows[i].most + spare_rows(denoiser), map.width);
     }
 }
 

@@ -277,7 +277,7 @@ denoise
     -o, --output FILE         recording to write (.h5, .tif, .npy, .png)
         --polarity SIGN       sign of the flow's phase; auto judges every frame
                               (negative, auto, positive; default: auto)
-        --fast                minimal filtering; differs in the last digits
+        --fast                half precision where available; less exact
     -f, --force               replace existing output
     -T, --threads N           worker threads; 0 = all processors (default: 0)
         --cpu LEVEL           auto, scalar, avx2 or avx512 (default: auto)
@@ -310,7 +310,7 @@ run
   
   Options:
     -m, --model FILE          denoising network (.safetensors)
-        --fast                minimal filtering; differs in the last digits
+        --fast                half precision where available; less exact
     -r, --rig FILE            how the set-up is built (.ini)
     -o, --output FILE         result to write (.h5)
         --plus FILE           planes in files of their own: beyond focus
