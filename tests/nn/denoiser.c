@@ -4,6 +4,8 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <ptie/dataset.h>
 #include <ptie/model.h>
@@ -312,6 +314,41 @@ static void fast_denoises_as_well(void **state) {
     close_fixture(&f);
 }
 
+/* An image behind which the memory ends. */
+static float *image_at_the_end(size_t floats, void **pages, size_t *bytes) {
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE), size = floats * sizeof(float);
+    const size_t room = (size + page - 1) / page * page;
+    *bytes = room + page;
+    *pages = mmap(NULL, *bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    assert_true(*pages != MAP_FAILED);
+    assert_int_equal(mprotect((unsigned char *)*pages + room, page, PROT_NONE), 0);
+    return (float *)(void *)((unsigned char *)*pages + room - size);
+}
+
+/* Nothing is read or written behind the caller's images. */
+static void images_may_end_where_memory_ends(void **state) {
+    (void)state;
+    fixture f = open_fixture(2);
+    for (int32_t width = 1; width <= 70; width += 3)
+        for (int fast = 0; fast < 2; fast++) {
+            const int32_t height = 3;
+            void *pages, *scratch;
+            size_t bytes;
+            float *image = image_at_the_end((size_t)(width * height), &pages, &bytes);
+            ptie_denoiser *denoiser;
+            ptie_denoiser_params params;
+            ptie_denoiser_params_init(&params);
+            params.fast = fast;
+            assert_ok(ptie_denoiser_create(&denoiser, f.ctx, f.model, width, height, &params));
+            scratch = ptie_scratch_alloc(ptie_denoiser_scratch_bytes(denoiser));
+            assert_ok(ptie_denoiser_run(denoiser, image, image, scratch));
+            ptie_scratch_free(scratch);
+            ptie_denoiser_free(denoiser);
+            munmap(pages, bytes);
+        }
+    close_fixture(&f);
+}
+
 /* Two threads, each with its scratch, and a frame that no cache holds. */
 static void memory_does_not_grow_with_the_area(void **state) {
     (void)state;
@@ -523,6 +560,7 @@ int main(void) {
         cmocka_unit_test(a_shared_frame_may_be_denoised_in_place),
         cmocka_unit_test(fast_is_close),
         cmocka_unit_test(fast_denoises_as_well),
+        cmocka_unit_test(images_may_end_where_memory_ends),
         cmocka_unit_test(memory_does_not_grow_with_the_area),
         cmocka_unit_test(runs_do_not_know_each_other),
         cmocka_unit_test(radians_come_back_through_the_identity),

@@ -20,7 +20,7 @@ void VEC(sigmoid)(const ptie_map *out, const ptie_map *in) {
     for (int32_t c = 0; c < in->channels; c++)
         for (int32_t y = 0; y < in->height; y++)
             for (int32_t x = 0; x < in->width; x += VEC_WIDTH) {
-                const vf value = -vf_load(row_of(in, c, y) + x);
+                const vf value = -vf_load_first(row_of(in, c, y) + x, in->width - x);
                 const vf within = vf_max(vf_select(value > limit, limit, value), -limit);
                 vf_store_first(row_of(out, c, y) + x, vf_splat(1) / (vf_splat(1) + vf_exp(within)),
                                in->width - x);

@@ -78,6 +78,17 @@ INLINE void vf_store_first(float *to, vf value, int32_t count) {
         vf_store_rest(to, value, count);
 }
 
+/* The end of a row behind which there may be no memory; the other lanes are 0. */
+static __attribute__((noinline, unused)) vf vf_load_rest(const float *from, int32_t count) {
+    vf value = {0};
+    for (int32_t i = 0; i < count; i++) value[i] = from[i];
+    return value;
+}
+
+INLINE vf vf_load_first(const float *from, int32_t count) {
+    return count >= VEC_WIDTH ? vf_load(from) : vf_load_rest(from, count);
+}
+
 INLINE vf vf_splat(float value) {
     return value - (vf){0}; /* x - 0 is x even for x = -0, so nothing is computed */
 }
