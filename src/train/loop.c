@@ -5,10 +5,10 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 #include <ptie/version.h>
 
+#include "base/clock.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "nn/model.h"
@@ -31,12 +31,6 @@ void ptie_train_params_init(ptie_train_params *params) {
         .w_mse = 0.1,
         .patience = 5,
     };
-}
-
-static double now_s(void) {
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
 static uint64_t samples_done(const ptie_trainer *t) {
@@ -107,20 +101,20 @@ static ptie_status optimise(ptie_trainer *t, int32_t count, const ptie_aside *as
 }
 
 static ptie_status take_step(ptie_trainer *t) {
-    const double start_s = now_s();
+    const double start_s = ptie_now_s();
     const int32_t count = batch_at(t, t->sums.samples);
     if (t->ordered_epoch != t->epoch_count) PTIE_TRY(load_first(t, count));
     ptie_stepper_advance(t->stepper);
     t->loading = t->sums.samples + (uint64_t)count;
     const ptie_aside next = {load_sample, t, (size_t)batch_at(t, t->loading)};
     PTIE_TRY(optimise(t, count, &next));
-    t->seconds += now_s() - start_s;
+    t->seconds += ptie_now_s() - start_s;
     const int32_t interval = t->params->checkpoint_steps;
     if (interval > 0 && t->step % (uint64_t)interval == 0) PTIE_TRY(ptie_checkpoint_save(t));
 
     char note[128];
     const ptie_scores mean = ptie_mean_scores(&t->sums);
-    snprintf(note, sizeof note, "epoch %zu/%d loss %.4f PSNR %.2f dB", t->epoch_count + 1,
+    ptie_print(note, sizeof note, "epoch %zu/%d loss %.4f PSNR %.2f dB", t->epoch_count + 1,
              t->params->epochs, mean.loss, mean.psnr_db);
     return report(t, note);
 }
@@ -131,7 +125,7 @@ static int report_validation(void *user, uint64_t done, uint64_t total, const ch
     const ptie_trainer *t = user;
     char line[128];
     (void)note;
-    snprintf(line, sizeof line, "epoch %zu/%d validation %llu/%llu", t->epoch_count + 1,
+    ptie_print(line, sizeof line, "epoch %zu/%d validation %llu/%llu", t->epoch_count + 1,
              t->params->epochs, (unsigned long long)done, (unsigned long long)total);
     return report(t, line) != PTIE_OK;
 }
@@ -175,16 +169,16 @@ static ptie_status save_state(ptie_trainer *t) {
 }
 
 static ptie_status finish_epoch(ptie_trainer *t) {
-    const double start_s = now_s();
+    const double start_s = ptie_now_s();
     ptie_scores validation;
     PTIE_TRY(validate(t, &validation));
-    close_epoch(t, &validation, now_s() - start_s);
+    close_epoch(t, &validation, ptie_now_s() - start_s);
     PTIE_TRY(save_best(t));
     PTIE_TRY(save_state(t));
 
     char note[160];
     const ptie_epoch *row = &t->epochs[t->epoch_count - 1];
-    snprintf(note, sizeof note,
+    ptie_print(note, sizeof note,
              "epoch %d/%d loss %.4f PSNR %.2f dB, validation loss %.4f PSNR %.2f dB", row->epoch,
              t->params->epochs, row->train.loss, row->train.psnr_db, row->validation.loss,
              row->validation.psnr_db);
@@ -203,7 +197,7 @@ static bool is_finished(const ptie_trainer *t) {
     if (t->epoch_count == (size_t)p->epochs) return true;
     if (p->patience > 0 && since_best > (size_t)p->patience) return true;
     if (p->steps_limit > 0 && t->step >= p->steps_limit) return true;
-    return p->time_limit_s > 0 && now_s() - t->started_s >= p->time_limit_s;
+    return p->time_limit_s > 0 && ptie_now_s() - t->started_s >= p->time_limit_s;
 }
 
 /* A complete epoch is always judged, also when a limit is reached with it. */
@@ -307,7 +301,7 @@ ptie_status ptie_train_run(const ptie_engine *engine, ptie_model *model,
                       .path = path,
                       .params = params,
                       .progress = progress,
-                      .started_s = now_s()};
+                      .started_s = ptie_now_s()};
     ptie_status status = prepare(&t);
     if (status == PTIE_OK) {
         status = run_epochs(&t);

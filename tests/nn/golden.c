@@ -98,7 +98,7 @@ static void check_first_step(golden *g) {
                                  ? ptie_stepper_state(g->stepper, 0, param->name, &count)
                                  : g->model->values + param->offset;
         double error = support_relative_error(found, tensor(g, name), count);
-        /* Required 1e-4; measured 2e-6 at worst. */
+        /* Required 1e-4; measured 4e-6 at worst. */
         if (!(error <= 1e-5)) fail_msg("%s: relative error %g", name, error);
     }
 }
@@ -116,7 +116,7 @@ static void check_ten_steps(golden *g) {
         ptie_stepper_update(g->stepper, &adamw, step);
         double loss = (parts[0].loss + parts[1].loss) / 2;
         double expected = (double)tensor(g, "step_losses")[step - 1];
-        assert_near(loss, expected, 2e-6 * expected); /* required 1e-4, measured 3e-7 */
+        assert_near(loss, expected, 5e-6 * expected); /* required 1e-4, measured 1.3e-6 */
     }
 }
 
