@@ -3,12 +3,13 @@
 #   make          build/ptie
 #   make demo     a synthetic recording of a jet, reconstructed and denoised: out/demo/
 #   make test     every test; the last line counts them
+#   make levels   the tests again with every kernel level of this machine forced
 #   make sanitize the tests again under ASan + UBSan, then TSan (longer)
 
 BUILD ?= build
 MESON_FLAGS ?=
 
-.PHONY: all demo test sanitize clean
+.PHONY: all demo test levels sanitize clean
 all: $(BUILD)/build.ninja
 	@ninja -C $(BUILD)
 
@@ -28,6 +29,9 @@ demo: all
 
 test: test-dependencies all
 	@meson test -C $(BUILD) --print-errorlogs; tools/count-tests $(BUILD)/meson-logs/testlog.json
+
+levels: test-dependencies all
+	@tools/test-levels $(BUILD)
 
 sanitize: test-dependencies
 	@tools/sanitize

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Maps in memory that is watched: odd strides, unaligned rows, and everything outside the interior
- * must stay as it was.
+/* Maps in memory that is watched: odd strides, unaligned rows, everything outside the interior must
+ * stay as it was, and before and behind lie pages that nobody may touch.
  */
 #ifndef PTIE_TESTS_KERNEL_BLOCK_H
 #define PTIE_TESTS_KERNEL_BLOCK_H
@@ -9,9 +9,32 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include "base/random.h"
 #include "kernel/kernel.h"
+
+/* Bytes of `floats` and of the page before and the page behind them. */
+static inline size_t guarded_bytes(size_t floats) {
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    return (floats * sizeof(float) + page - 1) / page * page + 2 * page;
+}
+
+/* Floats between two pages without access; they touch the one behind or, `low`, the one before. */
+static inline float *guarded_make(size_t floats, bool low) {
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE), bytes = guarded_bytes(floats);
+    char *all = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    assert_true(all != MAP_FAILED);
+    assert_int_equal(mprotect(all + page, bytes - 2 * page, PROT_READ | PROT_WRITE), 0);
+    return (float *)(void *)(low ? all + page : all + bytes - page - floats * sizeof(float));
+}
+
+static inline void guarded_free(float *memory, size_t floats) {
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    char *first = (char *)((uintptr_t)memory / page * page);
+    assert_int_equal(munmap(first - page, guarded_bytes(floats)), 0);
+}
 
 typedef struct block {
     float *memory;
@@ -31,7 +54,7 @@ static inline block block_make(int32_t channels, int32_t height, int32_t width,
     b.map.plane = (height + 2) * b.map.row + ptie_random_integer(random, 0, 9);
     size_t lead = (size_t)(b.map.row + 1 + ptie_random_integer(random, 0, 15));
     b.floats = lead + (size_t)(channels * b.map.plane) + PTIE_MAP_OVERREAD;
-    b.memory = malloc(b.floats * sizeof *b.memory);
+    b.memory = guarded_make(b.floats, ptie_random_integer(random, 0, 1) == 0);
     b.map.data = b.memory + lead;
     block_fill(&b, random);
     return b;
@@ -39,7 +62,7 @@ static inline block block_make(int32_t channels, int32_t height, int32_t width,
 
 static inline block block_copy(const block *b) {
     block copy = *b;
-    copy.memory = malloc(b->floats * sizeof *b->memory);
+    copy.memory = guarded_make(b->floats, (uintptr_t)b->memory % 64 == 0);
     memcpy(copy.memory, b->memory, b->floats * sizeof *b->memory);
     copy.map.data = copy.memory + (b->map.data - b->memory);
     return copy;
@@ -53,7 +76,7 @@ static inline block block_absolute(const block *b) {
 }
 
 static inline void block_free(block *b) {
-    free(b->memory);
+    guarded_free(b->memory, b->floats);
 }
 
 static inline float *block_pixel(const block *b, int32_t c, int32_t y, int32_t x) {
@@ -68,7 +91,7 @@ static inline void block_clear_halo(block *b) {
         for (int32_t y = 0; y < b->map.height; y++)
             for (int32_t x = 0; x < b->map.width; x++)
                 *block_pixel(&zero, c, y, x) = *block_pixel(b, c, y, x);
-    free(b->memory);
+    block_free(b);
     *b = zero;
 }
 

@@ -86,7 +86,7 @@ static void test_conv3x3(twin *t) {
     block found = block_make(t->out_channels, t->height, t->width, &t->random);
     block expected = block_copy(&found), magnitude = block_copy(&found);
     float *weights = make_floats(t, weight_count), *bias = make_floats(t, (size_t)t->out_channels);
-    float *packed = malloc(packed_count * sizeof *packed);
+    float *packed = guarded_make(packed_count, false);
     ptie_conv3x3_pack(packed, weights, t->out_channels, t->in_channels, NULL);
     float *packed_abs = magnitudes(packed, packed_count),
           *bias_abs = magnitudes(bias, (size_t)t->out_channels);
@@ -100,7 +100,8 @@ static void test_conv3x3(twin *t) {
     }
     block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected),
         block_free(&magnitude);
-    free(weights), free(bias), free(packed), free(packed_abs), free(bias_abs);
+    free(weights), free(bias), free(packed_abs), free(bias_abs);
+    guarded_free(packed, packed_count);
 }
 
 /* Products summed by one lane of a vector, and the lanes: at least 8 of them. */
@@ -186,10 +187,11 @@ static void test_winograd3x3(twin *t) {
     float *weights = make_floats(t, weight_count), *bias = make_floats(t, (size_t)t->out_channels);
     float *weights_abs = magnitudes(weights, weight_count),
           *bias_abs = magnitudes(bias, (size_t)t->out_channels);
-    float *packed = malloc(ptie_winograd_packed(t->out_channels, t->in_channels) * sizeof *packed);
-    float *direct = malloc(ptie_conv3x3_packed(t->out_channels, t->in_channels) * sizeof *direct);
-    float *scratch =
-        malloc(ptie_winograd_scratch(t->out_channels, t->in_channels) * sizeof *scratch);
+    const size_t packed_count = ptie_winograd_packed(t->out_channels, t->in_channels);
+    const size_t direct_count = ptie_conv3x3_packed(t->out_channels, t->in_channels);
+    const size_t scratch_count = ptie_winograd_scratch(t->out_channels, t->in_channels);
+    float *packed = guarded_make(packed_count, false), *direct = guarded_make(direct_count, false);
+    float *scratch = guarded_make(scratch_count, false);
     ptie_winograd_pack(packed, weights, t->out_channels, t->in_channels, NULL);
     ptie_conv3x3_pack(direct, weights, t->out_channels, t->in_channels, NULL);
     winograd_magnitude(&magnitude, &in_abs, weights_abs, bias_abs);
@@ -211,7 +213,8 @@ static void test_winograd3x3(twin *t) {
     block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected),
         block_free(&magnitude);
     free(weights), free(bias), free(weights_abs), free(bias_abs);
-    free(packed), free(direct), free(scratch);
+    guarded_free(packed, packed_count), guarded_free(direct, direct_count);
+    guarded_free(scratch, scratch_count);
 }
 
 /* Magnitude of the gradient of one tap: over strips and parts, |G'| (|A| |g|) (|B'| |d|). */
@@ -237,7 +240,8 @@ static void test_conv3x3_weights(twin *t) {
     block g = block_make(t->out_channels, t->height, t->width, &t->random),
           g_abs = block_absolute(&g);
     double *sums = calloc(3 * count, sizeof *sums);
-    float *scratch = malloc(ptie_winograd_scratch(t->out_channels, inputs) * sizeof *scratch);
+    const size_t scratch_count = ptie_winograd_scratch(t->out_channels, inputs);
+    float *scratch = guarded_make(scratch_count, false);
     for (size_t i = 0; i < count; i++) {
         sums[i] = sums[count + i] = 0.5; /* it adds */
         const int32_t o = (int32_t)i / 9 / inputs, c = (int32_t)i / 9 % inputs;
@@ -249,7 +253,8 @@ static void test_conv3x3_weights(twin *t) {
     compare_sums(t, sums, sums + count, sums + 2 * count,
                  gamma_n(10 + lane_terms(t, (t->height + 3) / 4)), count, "conv3x3_weights");
     block_free(&in), block_free(&in_abs), block_free(&g), block_free(&g_abs);
-    free(sums), free(scratch);
+    free(sums);
+    guarded_free(scratch, scratch_count);
 }
 
 static void test_conv1x1(twin *t) {
@@ -465,7 +470,8 @@ static void check_window(twin *t, bool adjoint) {
     block in = adjoint ? small : large, found = adjoint ? large : small;
     block expected = block_copy(&found), magnitude = block_copy(&found),
           in_abs = block_absolute(&in);
-    float *row = malloc((size_t)(width + 64) * sizeof *row), taps[PTIE_SSIM_WINDOW];
+    const size_t row_count = (size_t)(width + 64);
+    float *row = guarded_make(row_count, false), taps[PTIE_SSIM_WINDOW];
     for (int i = 0; i <= PTIE_SSIM_WINDOW / 2; i++)
         taps[i] = taps[PTIE_SSIM_WINDOW - 1 - i] = (float)uniform(t, 0, 1);
     const ptie_kernels *tables[3] = {t->kernels, t->scalar, t->scalar};
@@ -477,7 +483,7 @@ static void check_window(twin *t, bool adjoint) {
             adjoint ? "window_adjoint" : "window");
     block_free(&small), block_free(&large), block_free(&expected), block_free(&magnitude);
     block_free(&in_abs);
-    free(row);
+    guarded_free(row, row_count);
 }
 
 static void test_window(twin *t) {
