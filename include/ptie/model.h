@@ -54,10 +54,9 @@ typedef struct ptie_denoiser ptie_denoiser;
 
 typedef struct ptie_denoiser_params {
     uint32_t struct_size; /* set by ptie_denoiser_params_init */
-    bool fast; /* less exact, with the bits of this kind of processor.  With AVX512-FP16 in half precision,
-                  docs/math.md (N10): twice as fast; in [0, 1] the shipped model's estimate differs by 2e-3 rms
-                  and by less than 0.1, its PSNR by 0.002 dB on average.  Elsewhere by minimal filtering, (N9):
-                  the estimate differs by less than 2e-5. */
+    bool fast; /* with AVX512-FP16 in half precision, docs/math.md (N10): less exact, 1.7 times as fast; in
+                  [0, 1] the shipped model's estimate differs by 2e-3 rms and by less than 0.1, its PSNR by
+                  0.002 dB on average.  Elsewhere it changes nothing. */
     bool all_threads; /* a run takes all threads of the context for its one frame: least time to a result.
                          The context must outlive the denoiser and do nothing else meanwhile. */
 } ptie_denoiser_params;

@@ -130,7 +130,7 @@ ptie_status ptie_nn_denoiser(ptie_denoiser **out, const ptie_engine *engine,
     denoiser->full_width = (width + unit - 1) / unit * unit;
     denoiser->full_height = (height + unit - 1) / unit * unit;
     if (fast) denoiser->half = ptie_half_kernels_of(engine->level);
-    if (fast && !denoiser->half) choose_filtering(denoiser);
+    if (!denoiser->half) choose_filtering(denoiser);
     lay_out(denoiser);
     ptie_status status =
         ptie_alloc_status(&denoiser->block, slice_block(denoiser, NULL), 1, "denoiser");
