@@ -144,40 +144,56 @@ typedef struct target {
     cursor *ahead;
 } target;
 
-/* A row of a strip, and its part in the sums. */
-INLINE void store_row(const target *out, float *to, vf value, int32_t left, vf *sum, vf *squares) {
-    if (!out->moments) {
-        vf_store_first(to, value, left);
-        return;
-    }
-    value = vf_first(value, left);
-    *sum += value;
-    *squares += value * value;
-    if (left >= VEC_WIDTH)
-        vf_stream(to, value);
-    else
-        vf_store_first(to, value, left);
-}
-
-/* sums: of the OUT channels, then of their squares. */
-INLINE void store_strip(const target *out, const float *parts, const int vectors,
-                        vf sums[2 * OUT]) {
+/* sums: of the OUT channels, then of their squares; only if `summed`.  `whole`: all rows and lanes
+   lie on the map. */
+INLINE void store_strip_as(const target *out, const float *parts, const int vectors,
+                           vf sums[2 * OUT], const bool whole, const bool summed) {
     const ptie_map *map = out->map;
     const int32_t channels = smaller(map->channels - out->first, OUT);
-    const int32_t rows = smaller(map->height - out->y, ROWS);
+    const int32_t rows = whole ? ROWS : smaller(map->height - out->y, ROWS);
     for (int32_t o = 0; o < channels; o++)
         UNROLL (v, vectors) {
-            vf row[ROWS];
-            join_parts(row, parts + o * BLOCK + v * VEC_WIDTH);
-            const int32_t x = out->x + v * VEC_WIDTH, left = map->width - x;
+            const int32_t x = out->x + v * VEC_WIDTH;
+            const int32_t left = whole ? VEC_WIDTH : map->width - x;
             const vf bias = vf_splat(out->bias ? out->bias[out->first + o] : 0);
             float *to = row_of(map, out->first + o, out->y) + x;
+            vf row[ROWS], sum = {0}, squares = {0};
+            join_parts(row, parts + o * BLOCK + v * VEC_WIDTH);
             UNROLL (r, ROWS) {
-                const vf value = out->relu ? vf_positive(row[r] + bias) : row[r] + bias;
-                if (r < rows && left > 0)
-                    store_row(out, to + r * map->row, value, left, &sums[o], &sums[OUT + o]);
+                vf value = out->relu ? vf_positive(row[r] + bias) : row[r] + bias;
+                if (!whole && (r >= rows || left <= 0)) continue;
+                if (!whole) value = vf_first(value, left);
+                sum += value;
+                squares += value * value;
+                if (!whole)
+                    vf_store_first(to + r * map->row, value, left);
+                else if (summed)
+                    vf_stream(to + r * map->row, value);
+                else
+                    vf_store(to + r * map->row, value);
+            }
+            if (summed) {
+                sums[o] += sum;
+                sums[OUT + o] += squares;
             }
         }
+}
+
+INLINE void store_strip(const target *out, const float *parts, const int vectors,
+                        vf sums[2 * OUT]) {
+    const bool whole =
+        out->map->height - out->y >= ROWS && out->map->width - out->x >= vectors * VEC_WIDTH;
+    if (out->moments) {
+        if (whole)
+            store_strip_as(out, parts, vectors, sums, true, true);
+        else
+            store_strip_as(out, parts, vectors, sums, false, true);
+    } else {
+        if (whole)
+            store_strip_as(out, parts, vectors, sums, true, false);
+        else
+            store_strip_as(out, parts, vectors, sums, false, false);
+    }
 }
 
 INLINE void convolve_block(const target *out, const tile *input, int32_t x, const float *weights,
