@@ -31,25 +31,34 @@ uint32_t ptie_random_u32(ptie_random *random) {
     return random->block[random->used++];
 }
 
-PTIE_CLONES static void fill_words(uint32_t *out, size_t blocks, const uint32_t key[2],
+/* Fills 4 numbers of 4 bytes per block of the generator, from counter[0] on. */
+typedef void fill_blocks(void *out, size_t blocks, const uint32_t key[2],
+                         const uint32_t counter[4]);
+
+static void fill(ptie_random *random, void *out, size_t count, fill_blocks *fill_some) {
+    const size_t blocks = count / 4, rest = count % 4;
+    fill_some(out, blocks, random->key, random->counter);
+    random->counter[0] += (uint32_t)blocks;
+    if (rest) {
+        uint32_t last[4];
+        fill_some(last, 1, random->key, random->counter);
+        random->counter[0]++;
+        memcpy((uint32_t *)out + 4 * blocks, last, rest * sizeof *last);
+    }
+    random->used = 4;
+}
+
+PTIE_CLONES static void fill_words(void *out, size_t blocks, const uint32_t key[2],
                                    const uint32_t counter[4]) {
+    uint32_t *word = out;
     for (size_t i = 0; i < blocks; i++) {
         const uint32_t own[4] = {counter[0] + (uint32_t)i, counter[1], counter[2], counter[3]};
-        ptie_philox(out + 4 * i, own, key);
+        ptie_philox(word + 4 * i, own, key);
     }
 }
 
 void ptie_random_words(ptie_random *random, uint32_t *out, size_t count) {
-    const size_t blocks = count / 4, rest = count % 4;
-    fill_words(out, blocks, random->key, random->counter);
-    random->counter[0] += (uint32_t)blocks;
-    if (rest) {
-        uint32_t last[4];
-        fill_words(last, 1, random->key, random->counter);
-        random->counter[0]++;
-        memcpy(out + 4 * blocks, last, rest * sizeof *out);
-    }
-    random->used = 4;
+    fill(random, out, count, fill_words);
 }
 
 double ptie_random_uniform(ptie_random *random, double low, double high) {
@@ -84,26 +93,18 @@ PTIE_INLINE void box_muller(float out[2], uint32_t a, uint32_t b) {
 }
 
 /* Four normals per block of the generator. */
-PTIE_CLONES static void fill_normals(float *out, size_t blocks, const uint32_t key[2],
+PTIE_CLONES static void fill_normals(void *out, size_t blocks, const uint32_t key[2],
                                      const uint32_t counter[4]) {
+    float *normal = out;
     for (size_t i = 0; i < blocks; i++) {
         const uint32_t own[4] = {counter[0] + (uint32_t)i, counter[1], counter[2], counter[3]};
         uint32_t word[4];
         ptie_philox(word, own, key);
-        box_muller(out + 4 * i, word[0], word[1]);
-        box_muller(out + 4 * i + 2, word[2], word[3]);
+        box_muller(normal + 4 * i, word[0], word[1]);
+        box_muller(normal + 4 * i + 2, word[2], word[3]);
     }
 }
 
 void ptie_random_normals(ptie_random *random, float *out, size_t count) {
-    const size_t blocks = count / 4, rest = count % 4;
-    fill_normals(out, blocks, random->key, random->counter);
-    random->counter[0] += (uint32_t)blocks;
-    if (rest) {
-        float last[4];
-        fill_normals(last, 1, random->key, random->counter);
-        random->counter[0]++;
-        memcpy(out + 4 * blocks, last, rest * sizeof *out);
-    }
-    random->used = 4;
+    fill(random, out, count, fill_normals);
 }

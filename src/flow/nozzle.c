@@ -8,7 +8,7 @@
 
 #define MOST_CHANNELS 7
 
-/* Outlines of real nozzles, from the exit (t = 0) upstream. */
+/* Outlines of real nozzles, over the distance t upstream of the lip. */
 typedef enum outline { OUTLINE_TUBE, OUTLINE_CONE, OUTLINE_BELL, OUTLINE_CAP, OUTLINES } outline;
 
 typedef struct body {

@@ -105,6 +105,23 @@ static inline double block_dot(const block *a, const block *b) {
     return sum;
 }
 
+typedef struct block_sizes {
+    int32_t in_channels, out_channels, height, width;
+} block_sizes;
+
+/* Case `at` of widest + count^2: all widths with channels and heights that go round, then all pairs
+   of channel counts. */
+static inline block_sizes block_case(int32_t at, int32_t widest, const int32_t *channels,
+                                     int32_t count) {
+    static const int32_t widths[] = {5, 16, 37, 47, 64}; /* tails and whole vectors */
+    const int32_t width = at + 1, pair = at - widest;
+    if (at < widest)
+        return (block_sizes){channels[width % (count - 1)], channels[width / 3 % count],
+                             1 + width % 4, width};
+    return (block_sizes){channels[pair % count], channels[pair / count], 1 + pair % 3,
+                         widths[pair % 5]};
+}
+
 /* Rounding of n operations in single precision: gamma_n = n u / (1 - n u). */
 static inline double gamma_n(double n) {
     const double u = 0x1p-24;

@@ -17,7 +17,7 @@ enum { CHANNEL_COUNTS = sizeof channel_counts / sizeof *channel_counts };
 /* One case: sizes, the kernels under test, random numbers. */
 typedef struct twin {
     const ptie_half_kernels *kernels, *scalar;
-    int32_t in_channels, out_channels, height, width;
+    block_sizes size;
     bool exact; /* only small integers: nothing is rounded */
     ptie_random random;
 } twin;
@@ -63,8 +63,8 @@ static void compare(const twin *t, const block *found, const block *expected,
                     fabs(value_at(found, c, y, x) - value_at(expected, c, y, x));
                 if (!(difference <= factor * size + extra))
                     fail_msg("%s: %d -> %d channels, %d x %d, at (%d, %d, %d): off by %g, bound %g",
-                             kernel, t->in_channels, t->out_channels, t->width, t->height, c, y, x,
-                             difference, factor * size + extra);
+                             kernel, t->size.in_channels, t->size.out_channels, t->size.width,
+                             t->size.height, c, y, x, difference, factor * size + extra);
                 *half_pixel(&outside, c, y, x) = *half_pixel(expected, c, y, x);
             }
     assert_memory_equal(outside.memory, expected->memory, outside.floats * sizeof(float));
@@ -84,18 +84,18 @@ static block half_magnitudes(const block *b, twin *t) {
 }
 
 static void test_conv3x3(twin *t) {
-    const size_t packed_count = ptie_conv3x3_packed(t->out_channels, t->in_channels);
+    const size_t packed_count = ptie_conv3x3_packed(t->size.out_channels, t->size.in_channels);
     float weights[48 * 48 * 9], bias[48];
-    for (int32_t i = 0; i < t->out_channels * t->in_channels * 9; i++)
+    for (int32_t i = 0; i < t->size.out_channels * t->size.in_channels * 9; i++)
         weights[i] = number(t, -1, 1);
-    for (int32_t o = 0; o < t->out_channels; o++)
+    for (int32_t o = 0; o < t->size.out_channels; o++)
         bias[o] = ptie_half_to(ptie_half_from(number(t, -1, 1)));
-    block in = half_block(t, t->in_channels, t->height, t->width, 0, 2);
-    block found = half_block(t, t->out_channels, t->height, t->width, 0, 2),
+    block in = half_block(t, t->size.in_channels, t->size.height, t->size.width, 0, 2);
+    block found = half_block(t, t->size.out_channels, t->size.height, t->size.width, 0, 2),
           expected = block_copy(&found);
     float *packed = malloc(packed_count * sizeof *packed),
           *sizes = malloc(packed_count * sizeof *sizes);
-    ptie_conv3x3_pack(packed, weights, t->out_channels, t->in_channels, NULL);
+    ptie_conv3x3_pack(packed, weights, t->size.out_channels, t->size.in_channels, NULL);
     for (size_t i = 0; i < packed_count; i++)
         sizes[i] = fabsf(ptie_half_to(ptie_half_from(packed[i])));
     ptie_half_pairs(packed, packed_count);
@@ -104,9 +104,9 @@ static void test_conv3x3(twin *t) {
 
     block in_abs = half_magnitudes(&in, t), magnitude = half_magnitudes(&found, t);
     float bias_abs[48];
-    for (int32_t o = 0; o < t->out_channels; o++) bias_abs[o] = fabsf(bias[o]);
+    for (int32_t o = 0; o < t->size.out_channels; o++) bias_abs[o] = fabsf(bias[o]);
     ptie_kernels_of(PTIE_CPU_SCALAR)->conv3x3(&magnitude.map, &in_abs.map, sizes, bias_abs, false);
-    const double terms = 9 * t->in_channels + 1;
+    const double terms = 9 * t->size.in_channels + 1;
     if (t->exact) /* every partial sum is an integer of at most 48 * 18 + 1 < 2048 */
         compare(t, &found, &expected, NULL, 0, 0, "conv3x3, integers");
     else /* the twin rounds to a half once, and in single precision terms / 8192 as much */
@@ -119,23 +119,24 @@ static void test_conv3x3(twin *t) {
 
 static void test_conv1x1(twin *t) {
     float weights[48 * 48], bias[48];
-    for (int32_t i = 0; i < t->out_channels * t->in_channels; i++) weights[i] = number(t, -1, 1);
-    for (int32_t o = 0; o < t->out_channels; o++) bias[o] = number(t, -1, 1);
-    block in = half_block(t, t->in_channels, t->height, t->width, 0, 2);
-    block found = block_make(t->out_channels, t->height, t->width, &t->random),
+    for (int32_t i = 0; i < t->size.out_channels * t->size.in_channels; i++)
+        weights[i] = number(t, -1, 1);
+    for (int32_t o = 0; o < t->size.out_channels; o++) bias[o] = number(t, -1, 1);
+    block in = half_block(t, t->size.in_channels, t->size.height, t->size.width, 0, 2);
+    block found = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random),
           expected = block_copy(&found);
     t->kernels->conv1x1(&found.map, &in.map, weights, bias);
     t->scalar->conv1x1(&expected.map, &in.map, weights, bias);
     /* Twice the rounding of terms of at most 2. */
-    const double bound = 2 * gamma_n(t->in_channels + 1) * (2 * t->in_channels + 1);
+    const double bound = 2 * gamma_n(t->size.in_channels + 1) * (2 * t->size.in_channels + 1);
     for (size_t i = 0; i < found.floats; i++)
         assert_near((double)found.memory[i], (double)expected.memory[i], bound);
     block_free(&in), block_free(&found), block_free(&expected);
 }
 
 static void test_maxpool(twin *t) {
-    block in = half_block(t, t->out_channels, 2 * t->height, 2 * t->width, 0, 3);
-    block found = half_block(t, t->out_channels, t->height, t->width, 0, 3),
+    block in = half_block(t, t->size.out_channels, 2 * t->size.height, 2 * t->size.width, 0, 3);
+    block found = half_block(t, t->size.out_channels, t->size.height, t->size.width, 0, 3),
           expected = block_copy(&found);
     t->kernels->maxpool(&found.map, &in.map);
     t->scalar->maxpool(&expected.map, &in.map);
@@ -146,9 +147,10 @@ static void test_maxpool(twin *t) {
 /* Two blends of two numbers of at most 3, each of a product and a multiply-add; the twin rounds
    once. */
 static void test_upsample(twin *t) {
-    const int32_t first = t->width % (2 * t->height);
-    block in = half_block(t, t->out_channels, t->height, t->width, 0, 3);
-    block found = half_block(t, t->out_channels, 2 * t->height - first, 2 * t->width, 0, 3),
+    const int32_t first = t->size.width % (2 * t->size.height);
+    block in = half_block(t, t->size.out_channels, t->size.height, t->size.width, 0, 3);
+    block found = half_block(t, t->size.out_channels, 2 * t->size.height - first, 2 * t->size.width,
+                             0, 3),
           expected = block_copy(&found);
     t->kernels->upsample(&found.map, &in.map, first);
     t->scalar->upsample(&expected.map, &in.map, first);
@@ -160,15 +162,14 @@ static void test_upsample(twin *t) {
 static void test_narrow(twin *t) {
     float in[WIDEST];
     ptie_half found[WIDEST + 1], expected[WIDEST + 1] = {0};
-    for (int i = 0; i < t->width; i++)
+    for (int i = 0; i < t->size.width; i++)
         in[i] = ldexpf((float)ptie_random_uniform(&t->random, -1, 1), i % 44 - 26);
-    expected[t->width] = found[t->width] = 1234;
-    t->kernels->narrow(found, in, t->width);
-    t->scalar->narrow(expected, in, t->width);
-    assert_memory_equal(found, expected, (size_t)(t->width + 1) * sizeof *found);
+    expected[t->size.width] = found[t->size.width] = 1234;
+    t->kernels->narrow(found, in, t->size.width);
+    t->scalar->narrow(expected, in, t->size.width);
+    assert_memory_equal(found, expected, (size_t)(t->size.width + 1) * sizeof *found);
 }
 
-/* All widths, with channels and heights that go round; then all channel counts. */
 static void run_cases(void (*test)(twin *)) {
     twin t = {.kernels = ptie_half_kernels_of(ptie_cpu_detect()),
               .scalar = &ptie_half_kernels_scalar};
@@ -176,18 +177,8 @@ static void run_cases(void (*test)(twin *)) {
     ptie_random_init(&t.random, 12, PTIE_STREAM_WEIGHTS, 0);
     for (int exact = 0; exact < 2; exact++) {
         t.exact = exact;
-        for (t.width = 1; t.width <= WIDEST; t.width++) {
-            t.in_channels = channel_counts[t.width % 7];
-            t.out_channels = channel_counts[t.width / 3 % 7];
-            t.height = 1 + t.width % 4;
-            test(&t);
-        }
-        for (int32_t i = 0; i < CHANNEL_COUNTS * CHANNEL_COUNTS; i++) {
-            static const int32_t widths[] = {5, 32, 47, 64};
-            t.in_channels = channel_counts[i % CHANNEL_COUNTS];
-            t.out_channels = channel_counts[i / CHANNEL_COUNTS];
-            t.width = widths[i % 4];
-            t.height = 1 + i % 3;
+        for (int32_t i = 0; i < WIDEST + CHANNEL_COUNTS * CHANNEL_COUNTS; i++) {
+            t.size = block_case(i, WIDEST, channel_counts, CHANNEL_COUNTS);
             test(&t);
         }
     }
@@ -235,7 +226,7 @@ static void sums_beyond_the_largest_half_stay_there(void **state) {
     (void)state;
     const ptie_half_kernels *tables[] = {&ptie_half_kernels_scalar,
                                          ptie_half_kernels_of(ptie_cpu_detect())};
-    twin t = {.width = 70};
+    twin t = {.size.width = 70};
     ptie_random_init(&t.random, 13, PTIE_STREAM_WEIGHTS, 0);
     for (int i = 0; i < 2; i++) {
         block in = half_block(&t, 2, 1, 70, 60000, 65000), out = half_block(&t, 2, 1, 70, 0, 1);

@@ -16,7 +16,7 @@ enum { CHANNEL_COUNTS = sizeof channel_counts / sizeof *channel_counts };
 /* One case: sizes, the kernel under test, its twin, random numbers. */
 typedef struct twin {
     const ptie_kernels *kernels, *scalar;
-    int32_t in_channels, out_channels, height, width;
+    block_sizes size;
     ptie_random random;
 } twin;
 
@@ -42,13 +42,14 @@ static void compare(const twin *t, const block *found, const block *expected,
                                (extra ? extra[pixel] : 0);
                 if (!(difference <= bound))
                     fail_msg("%s: %d -> %d channels, %d x %d, at (%d, %d, %d): off by %g, bound %g",
-                             kernel, t->in_channels, t->out_channels, t->width, t->height, c, y, x,
-                             difference, bound);
+                             kernel, t->size.in_channels, t->size.out_channels, t->size.width,
+                             t->size.height, c, y, x, difference, bound);
             }
     for (size_t i = 0; i < found->floats; i++)
         if (!inside[i] && memcmp(&found->memory[i], &expected->memory[i], sizeof(float)) != 0)
             fail_msg("%s: %d -> %d channels, %d x %d: wrote outside, %zu floats into the block",
-                     kernel, t->in_channels, t->out_channels, t->width, t->height, i);
+                     kernel, t->size.in_channels, t->size.out_channels, t->size.width,
+                     t->size.height, i);
     free(inside);
 }
 
@@ -57,8 +58,8 @@ static void compare_sums(const twin *t, const double *found, const double *expec
     for (size_t i = 0; i < count; i++)
         if (!(fabs(found[i] - expected[i]) <= factor * magnitude[i]))
             fail_msg("%s: %d -> %d channels, %d x %d, sum %zu: found %.9g, expected %.9g, bound %g",
-                     kernel, t->in_channels, t->out_channels, t->width, t->height, i, found[i],
-                     expected[i], factor * magnitude[i]);
+                     kernel, t->size.in_channels, t->size.out_channels, t->size.width,
+                     t->size.height, i, found[i], expected[i], factor * magnitude[i]);
 }
 
 static float *make_floats(twin *t, size_t count) {
@@ -79,23 +80,24 @@ static void make_ties(block *b) {
 }
 
 static void test_conv3x3(twin *t) {
-    const size_t weight_count = (size_t)t->out_channels * (size_t)t->in_channels * 9;
-    const size_t packed_count = ptie_conv3x3_packed(t->out_channels, t->in_channels);
-    block in = block_make(t->in_channels, t->height, t->width, &t->random),
+    const size_t weight_count = (size_t)t->size.out_channels * (size_t)t->size.in_channels * 9;
+    const size_t packed_count = ptie_conv3x3_packed(t->size.out_channels, t->size.in_channels);
+    block in = block_make(t->size.in_channels, t->size.height, t->size.width, &t->random),
           in_abs = block_absolute(&in);
-    block found = block_make(t->out_channels, t->height, t->width, &t->random);
+    block found = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random);
     block expected = block_copy(&found), magnitude = block_copy(&found);
-    float *weights = make_floats(t, weight_count), *bias = make_floats(t, (size_t)t->out_channels);
+    float *weights = make_floats(t, weight_count),
+          *bias = make_floats(t, (size_t)t->size.out_channels);
     float *packed = guarded_make(packed_count, false);
-    ptie_conv3x3_pack(packed, weights, t->out_channels, t->in_channels, NULL);
+    ptie_conv3x3_pack(packed, weights, t->size.out_channels, t->size.in_channels, NULL);
     float *packed_abs = magnitudes(packed, packed_count),
-          *bias_abs = magnitudes(bias, (size_t)t->out_channels);
+          *bias_abs = magnitudes(bias, (size_t)t->size.out_channels);
     t->scalar->conv3x3(&magnitude.map, &in_abs.map, packed_abs, bias_abs, false);
     for (int variant = 0; variant < 3; variant++) { /* bare; with bias; with bias and ReLU */
         const float *used = variant ? bias : NULL;
         t->kernels->conv3x3(&found.map, &in.map, packed, used, variant == 2);
         t->scalar->conv3x3(&expected.map, &in.map, packed, used, variant == 2);
-        compare(t, &found, &expected, &magnitude, 2 * gamma_n(9 * t->in_channels + 1), NULL,
+        compare(t, &found, &expected, &magnitude, 2 * gamma_n(9 * t->size.in_channels + 1), NULL,
                 "conv3x3");
     }
     block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected),
@@ -106,7 +108,7 @@ static void test_conv3x3(twin *t) {
 
 /* Products summed by one lane of a vector, and the lanes: at least 8 of them. */
 static double lane_terms(const twin *t, int32_t rows) {
-    return rows * ((t->width + 7) / 8) + 6;
+    return rows * ((t->size.width + 7) / 8) + 6;
 }
 
 /* Magnitudes of the matrices of minimal filtering F(4,3), docs/math.md (N9). */
@@ -158,14 +160,14 @@ static void winograd_magnitude(block *out, const block *in_abs, const float *wei
 /* Streamed past the cache the result is the same, and its sums are those of what was stored. */
 static void check_moments(twin *t, block *found, const block *in, const float *packed,
                           float *scratch) {
-    const size_t count = 2 * (size_t)t->out_channels;
+    const size_t count = 2 * (size_t)t->size.out_channels;
     double *sums = calloc(3 * count, sizeof *sums), *exact = sums + count, *size = exact + count;
     for (size_t i = 0; i < count; i++) sums[i] = exact[i] = 0.5; /* it adds */
     t->kernels->winograd3x3(&found->map, &in->map, packed, NULL, false, NULL, scratch, NULL);
     block streamed = block_copy(found);
-    for (int32_t c = 0; c < t->out_channels; c++)
-        for (int32_t y = 0; y < t->height; y++)
-            for (int32_t x = 0; x < t->width; x++) {
+    for (int32_t c = 0; c < t->size.out_channels; c++)
+        for (int32_t y = 0; y < t->size.height; y++)
+            for (int32_t x = 0; x < t->size.width; x++) {
                 const double value = (double)*block_pixel(found, c, y, x);
                 exact[2 * c] += value, size[2 * c] += fabs(value);
                 exact[2 * c + 1] += value * value, size[2 * c + 1] += value * value;
@@ -179,25 +181,26 @@ static void check_moments(twin *t, block *found, const block *in, const float *p
 }
 
 static void test_winograd3x3(twin *t) {
-    const size_t weight_count = (size_t)t->out_channels * (size_t)t->in_channels * 9;
-    block in = block_make(t->in_channels, t->height, t->width, &t->random),
+    const size_t weight_count = (size_t)t->size.out_channels * (size_t)t->size.in_channels * 9;
+    block in = block_make(t->size.in_channels, t->size.height, t->size.width, &t->random),
           in_abs = block_absolute(&in);
-    block found = block_make(t->out_channels, t->height, t->width, &t->random);
+    block found = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random);
     block expected = block_copy(&found), magnitude = block_copy(&found);
-    float *weights = make_floats(t, weight_count), *bias = make_floats(t, (size_t)t->out_channels);
+    float *weights = make_floats(t, weight_count),
+          *bias = make_floats(t, (size_t)t->size.out_channels);
     float *weights_abs = magnitudes(weights, weight_count),
-          *bias_abs = magnitudes(bias, (size_t)t->out_channels);
-    const size_t packed_count = ptie_winograd_packed(t->out_channels, t->in_channels);
-    const size_t direct_count = ptie_conv3x3_packed(t->out_channels, t->in_channels);
-    const size_t scratch_count = ptie_winograd_scratch(t->out_channels, t->in_channels);
+          *bias_abs = magnitudes(bias, (size_t)t->size.out_channels);
+    const size_t packed_count = ptie_winograd_packed(t->size.out_channels, t->size.in_channels);
+    const size_t direct_count = ptie_conv3x3_packed(t->size.out_channels, t->size.in_channels);
+    const size_t scratch_count = ptie_winograd_scratch(t->size.out_channels, t->size.in_channels);
     float *packed = guarded_make(packed_count, false), *direct = guarded_make(direct_count, false);
     float *scratch = guarded_make(scratch_count, false);
-    ptie_winograd_pack(packed, weights, t->out_channels, t->in_channels, NULL);
-    ptie_conv3x3_pack(direct, weights, t->out_channels, t->in_channels, NULL);
+    ptie_winograd_pack(packed, weights, t->size.out_channels, t->size.in_channels, NULL);
+    ptie_conv3x3_pack(direct, weights, t->size.out_channels, t->size.in_channels, NULL);
     winograd_magnitude(&magnitude, &in_abs, weights_abs, bias_abs);
     /* Roundings in a row: 1 of the weights, 6 of the input's transform, 3 I products and sums, 6 of
        the output's, 1 of the bias; the direct sums are shorter and of smaller magnitude. */
-    const double factor = 2 * gamma_n(3 * t->in_channels + 14);
+    const double factor = 2 * gamma_n(3 * t->size.in_channels + 14);
     for (int variant = 0; variant < 3; variant++) {
         const float *used = variant ? bias : NULL;
         t->kernels->winograd3x3(&found.map, &in.map, packed, used, variant == 2, NULL, scratch,
@@ -206,8 +209,8 @@ static void test_winograd3x3(twin *t) {
                                NULL);
         compare(t, &found, &expected, &magnitude, factor, NULL, "winograd3x3");
         t->scalar->conv3x3(&expected.map, &in.map, direct, used, variant == 2);
-        compare(t, &found, &expected, &magnitude, factor + 2 * gamma_n(9 * t->in_channels), NULL,
-                "winograd3x3, direct");
+        compare(t, &found, &expected, &magnitude, factor + 2 * gamma_n(9 * t->size.in_channels),
+                NULL, "winograd3x3, direct");
     }
     check_moments(t, &found, &in, packed, scratch);
     block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected),
@@ -234,13 +237,14 @@ static double gradient_magnitude(const block *g_abs, const block *in_abs, int32_
 }
 
 static void test_conv3x3_weights(twin *t) {
-    const int32_t inputs = t->in_channels;
-    const size_t count = (size_t)t->out_channels * (size_t)inputs * 9;
-    block in = block_make(inputs, t->height, t->width, &t->random), in_abs = block_absolute(&in);
-    block g = block_make(t->out_channels, t->height, t->width, &t->random),
+    const int32_t inputs = t->size.in_channels;
+    const size_t count = (size_t)t->size.out_channels * (size_t)inputs * 9;
+    block in = block_make(inputs, t->size.height, t->size.width, &t->random),
+          in_abs = block_absolute(&in);
+    block g = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random),
           g_abs = block_absolute(&g);
     double *sums = calloc(3 * count, sizeof *sums);
-    const size_t scratch_count = ptie_winograd_scratch(t->out_channels, inputs);
+    const size_t scratch_count = ptie_winograd_scratch(t->size.out_channels, inputs);
     float *scratch = guarded_make(scratch_count, false);
     for (size_t i = 0; i < count; i++) {
         sums[i] = sums[count + i] = 0.5; /* it adds */
@@ -251,26 +255,27 @@ static void test_conv3x3_weights(twin *t) {
     t->scalar->conv3x3_weights(sums + count, &g.map, &in.map, scratch, NULL);
     /* 6 + 4 roundings of the transforms, then the lanes. */
     compare_sums(t, sums, sums + count, sums + 2 * count,
-                 gamma_n(10 + lane_terms(t, (t->height + 3) / 4)), count, "conv3x3_weights");
+                 gamma_n(10 + lane_terms(t, (t->size.height + 3) / 4)), count, "conv3x3_weights");
     block_free(&in), block_free(&in_abs), block_free(&g), block_free(&g_abs);
     free(sums);
     guarded_free(scratch, scratch_count);
 }
 
 static void test_conv1x1(twin *t) {
-    const size_t count = (size_t)t->out_channels * (size_t)t->in_channels;
-    block in = block_make(t->in_channels, t->height, t->width, &t->random),
+    const size_t count = (size_t)t->size.out_channels * (size_t)t->size.in_channels;
+    block in = block_make(t->size.in_channels, t->size.height, t->size.width, &t->random),
           in_abs = block_absolute(&in);
-    block found = block_make(t->out_channels, t->height, t->width, &t->random);
+    block found = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random);
     block expected = block_copy(&found), magnitude = block_copy(&found);
-    float *weights = make_floats(t, count), *bias = make_floats(t, (size_t)t->out_channels);
+    float *weights = make_floats(t, count), *bias = make_floats(t, (size_t)t->size.out_channels);
     float *weights_abs = magnitudes(weights, count),
-          *bias_abs = magnitudes(bias, (size_t)t->out_channels);
+          *bias_abs = magnitudes(bias, (size_t)t->size.out_channels);
     t->scalar->conv1x1(&magnitude.map, &in_abs.map, weights_abs, bias_abs);
     for (int with_bias = 0; with_bias < 2; with_bias++) {
         t->kernels->conv1x1(&found.map, &in.map, weights, with_bias ? bias : NULL);
         t->scalar->conv1x1(&expected.map, &in.map, weights, with_bias ? bias : NULL);
-        compare(t, &found, &expected, &magnitude, 2 * gamma_n(t->in_channels + 1), NULL, "conv1x1");
+        compare(t, &found, &expected, &magnitude, 2 * gamma_n(t->size.in_channels + 1), NULL,
+                "conv1x1");
     }
     block_free(&in), block_free(&in_abs), block_free(&found), block_free(&expected),
         block_free(&magnitude);
@@ -278,11 +283,11 @@ static void test_conv1x1(twin *t) {
 }
 
 static void test_conv1x1_weights(twin *t) {
-    const size_t weights = (size_t)t->out_channels * (size_t)t->in_channels;
-    const size_t count = weights + (size_t)t->out_channels; /* the biases follow */
-    block in = block_make(t->in_channels, t->height, t->width, &t->random),
+    const size_t weights = (size_t)t->size.out_channels * (size_t)t->size.in_channels;
+    const size_t count = weights + (size_t)t->size.out_channels; /* the biases follow */
+    block in = block_make(t->size.in_channels, t->size.height, t->size.width, &t->random),
           in_abs = block_absolute(&in);
-    block g = block_make(t->out_channels, t->height, t->width, &t->random),
+    block g = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random),
           g_abs = block_absolute(&g);
     double *sums = calloc(3 * count, sizeof *sums);
     for (size_t i = 0; i < count; i++) sums[i] = sums[count + i] = 0.5;
@@ -290,15 +295,15 @@ static void test_conv1x1_weights(twin *t) {
     t->scalar->conv1x1_weights(sums + count, sums + count + weights, &g.map, &in.map);
     t->scalar->conv1x1_weights(sums + 2 * count, sums + 2 * count + weights, &g_abs.map,
                                &in_abs.map);
-    compare_sums(t, sums, sums + count, sums + 2 * count, gamma_n(lane_terms(t, t->height)), count,
-                 "conv1x1_weights");
+    compare_sums(t, sums, sums + count, sums + 2 * count, gamma_n(lane_terms(t, t->size.height)),
+                 count, "conv1x1_weights");
     block_free(&in), block_free(&in_abs), block_free(&g), block_free(&g_abs);
     free(sums);
 }
 
 static ptie_norm *make_norms(twin *t) {
-    ptie_norm *norms = malloc((size_t)t->out_channels * sizeof *norms);
-    for (int32_t c = 0; c < t->out_channels; c++)
+    ptie_norm *norms = malloc((size_t)t->size.out_channels * sizeof *norms);
+    for (int32_t c = 0; c < t->size.out_channels; c++)
         norms[c] = (ptie_norm){.scale = (float)uniform(t, -2, 2),
                                .shift = (float)uniform(t, -1, 1),
                                .mean = (float)uniform(t, -0.5, 0.5),
@@ -319,15 +324,16 @@ static bool undecided(const ptie_norm *norm, double z) {
 }
 
 static void test_normalise(twin *t) {
-    block z = block_make(t->out_channels, t->height, t->width, &t->random);
-    block found = block_make(t->out_channels, t->height, t->width, &t->random),
+    block z = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random);
+    block found = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random),
           expected = block_copy(&found);
     ptie_norm *norms = make_norms(t);
-    double *bound = malloc((size_t)(t->out_channels * t->height * t->width) * sizeof *bound);
+    double *bound =
+        malloc((size_t)(t->size.out_channels * t->size.height * t->size.width) * sizeof *bound);
     size_t pixel = 0;
-    for (int32_t c = 0; c < t->out_channels; c++)
-        for (int32_t y = 0; y < t->height; y++)
-            for (int32_t x = 0; x < t->width; x++)
+    for (int32_t c = 0; c < t->size.out_channels; c++)
+        for (int32_t y = 0; y < t->size.height; y++)
+            for (int32_t x = 0; x < t->size.width; x++)
                 bound[pixel++] = normalise_rounding(&norms[c], (double)*block_pixel(&z, c, y, x));
     t->kernels->normalise(&found.map, &z.map, norms);
     t->scalar->normalise(&expected.map, &z.map, norms);
@@ -337,15 +343,15 @@ static void test_normalise(twin *t) {
 }
 
 static void test_normalise_sums(twin *t) {
-    const size_t count = 2 * (size_t)t->out_channels;
-    block z = block_make(t->out_channels, t->height, t->width, &t->random);
-    block g = block_make(t->out_channels, t->height, t->width, &t->random);
+    const size_t count = 2 * (size_t)t->size.out_channels;
+    block z = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random);
+    block g = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random);
     ptie_norm *norms = make_norms(t);
     double *sums = calloc(3 * count, sizeof *sums), *bound = sums + 2 * count;
-    const double factor = gamma_n(lane_terms(t, t->height) + 3);
-    for (int32_t c = 0; c < t->out_channels; c++)
-        for (int32_t y = 0; y < t->height; y++)
-            for (int32_t x = 0; x < t->width; x++) {
+    const double factor = gamma_n(lane_terms(t, t->size.height) + 3);
+    for (int32_t c = 0; c < t->size.out_channels; c++)
+        for (int32_t y = 0; y < t->size.height; y++)
+            for (int32_t x = 0; x < t->size.width; x++) {
                 double value = (double)*block_pixel(&z, c, y, x);
                 double xhat = (value - (double)norms[c].mean) * (double)norms[c].inverse_std;
                 double weight = fabs((double)*block_pixel(&g, c, y, x)) *
@@ -361,16 +367,17 @@ static void test_normalise_sums(twin *t) {
 }
 
 static void test_normalise_backward(twin *t) {
-    block z = block_make(t->out_channels, t->height, t->width, &t->random);
-    block g = block_make(t->out_channels, t->height, t->width, &t->random);
-    block found = block_make(t->out_channels, t->height, t->width, &t->random),
+    block z = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random);
+    block g = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random);
+    block found = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random),
           expected = block_copy(&found);
     ptie_norm *norms = make_norms(t);
-    double *bound = malloc((size_t)(t->out_channels * t->height * t->width) * sizeof *bound);
+    double *bound =
+        malloc((size_t)(t->size.out_channels * t->size.height * t->size.width) * sizeof *bound);
     size_t pixel = 0;
-    for (int32_t c = 0; c < t->out_channels; c++)
-        for (int32_t y = 0; y < t->height; y++)
-            for (int32_t x = 0; x < t->width; x++) {
+    for (int32_t c = 0; c < t->size.out_channels; c++)
+        for (int32_t y = 0; y < t->size.height; y++)
+            for (int32_t x = 0; x < t->size.width; x++) {
                 const ptie_norm *n = &norms[c];
                 double value = (double)*block_pixel(&z, c, y, x),
                        grad = (double)*block_pixel(&g, c, y, x);
@@ -388,8 +395,8 @@ static void test_normalise_backward(twin *t) {
 }
 
 static void test_maxpool(twin *t) {
-    block in = block_make(t->out_channels, 2 * t->height, 2 * t->width, &t->random);
-    block found = block_make(t->out_channels, t->height, t->width, &t->random),
+    block in = block_make(t->size.out_channels, 2 * t->size.height, 2 * t->size.width, &t->random);
+    block found = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random),
           expected = block_copy(&found);
     make_ties(&in);
     t->kernels->maxpool(&found.map, &in.map);
@@ -399,10 +406,11 @@ static void test_maxpool(twin *t) {
 }
 
 static void test_maxpool_backward(twin *t) {
-    block in = block_make(t->out_channels, 2 * t->height, 2 * t->width, &t->random);
-    block out = block_make(t->out_channels, t->height, t->width, &t->random);
-    block g = block_make(t->out_channels, t->height, t->width, &t->random);
-    block found = block_make(t->out_channels, 2 * t->height, 2 * t->width, &t->random);
+    block in = block_make(t->size.out_channels, 2 * t->size.height, 2 * t->size.width, &t->random);
+    block out = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random);
+    block g = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random);
+    block found =
+        block_make(t->size.out_channels, 2 * t->size.height, 2 * t->size.width, &t->random);
     block expected = block_copy(&found);
     make_ties(&in);
     t->scalar->maxpool(&out.map, &in.map);
@@ -413,10 +421,12 @@ static void test_maxpool_backward(twin *t) {
 }
 
 static void test_upsample(twin *t) {
-    const int32_t first = t->width % (2 * t->height); /* rows first .. of the finer image */
-    block in = block_make(t->out_channels, t->height, t->width, &t->random),
+    const int32_t first =
+        t->size.width % (2 * t->size.height); /* rows first .. of the finer image */
+    block in = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random),
           in_abs = block_absolute(&in);
-    block found = block_make(t->out_channels, 2 * t->height - first, 2 * t->width, &t->random);
+    block found =
+        block_make(t->size.out_channels, 2 * t->size.height - first, 2 * t->size.width, &t->random);
     block expected = block_copy(&found), magnitude = block_copy(&found);
     t->kernels->upsample(&found.map, &in.map, first);
     t->scalar->upsample(&expected.map, &in.map, first);
@@ -427,11 +437,12 @@ static void test_upsample(twin *t) {
 }
 
 static void test_upsample_backward(twin *t) {
-    const int32_t first = t->width % (2 * t->height), rows = 2 * t->height - first;
-    block g = block_make(t->out_channels, 1 + t->width % rows, 2 * t->width, &t->random);
+    const int32_t first = t->size.width % (2 * t->size.height), rows = 2 * t->size.height - first;
+    block g =
+        block_make(t->size.out_channels, 1 + t->size.width % rows, 2 * t->size.width, &t->random);
     block_clear_halo(&g); /* the kernel relies on it */
     block g_abs = block_absolute(&g);
-    block found = block_make(t->out_channels, t->height, t->width, &t->random);
+    block found = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random);
     block expected = block_copy(&found), magnitude = block_absolute(&found);
     t->kernels->upsample_backward(&found.map, &g.map, first);
     t->scalar->upsample_backward(&expected.map, &g.map, first);
@@ -444,8 +455,8 @@ static void test_upsample_backward(twin *t) {
 /* 1 / (1 + e): an error r of e changes the result by at most r / 4; e is good to 8 roundings in
    each twin, and the sum and the quotient round once more. */
 static void test_sigmoid(twin *t) {
-    block in = block_make(t->out_channels, t->height, t->width, &t->random);
-    block found = block_make(t->out_channels, t->height, t->width, &t->random),
+    block in = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random);
+    block found = block_make(t->size.out_channels, t->size.height, t->size.width, &t->random),
           expected = block_copy(&found);
     block ones = block_copy(&found);
     for (size_t i = 0; i < in.floats; i++) in.memory[i] *= i % 50 == 0 ? 200 : 12;
@@ -464,9 +475,10 @@ static block make_image(twin *t, int32_t height, int32_t width) {
 }
 
 static void check_window(twin *t, bool adjoint) {
-    const int32_t margin = PTIE_SSIM_WINDOW - 1, width = t->width + margin,
-                  height = t->height + margin;
-    block small = make_image(t, t->height, t->width), large = make_image(t, height, width);
+    const int32_t margin = PTIE_SSIM_WINDOW - 1, width = t->size.width + margin,
+                  height = t->size.height + margin;
+    block small = make_image(t, t->size.height, t->size.width),
+          large = make_image(t, height, width);
     block in = adjoint ? small : large, found = adjoint ? large : small;
     block expected = block_copy(&found), magnitude = block_copy(&found),
           in_abs = block_absolute(&in);
@@ -500,39 +512,28 @@ static void test_multiply_add(twin *t) {
     float *found = make_floats(t, PTIE_CHAIN_FLOATS), expected[PTIE_CHAIN_FLOATS];
     memcpy(expected, found, sizeof expected);
     const float factor = (float)uniform(t, -1, 1), addend = (float)uniform(t, -1, 1);
-    const double largest = 1 + t->width; /* |value| grows by less than 1 in a round */
-    t->kernels->multiply_add(found, factor, addend, t->width);
-    t->scalar->multiply_add(expected, factor, addend, t->width);
+    const double largest = 1 + t->size.width; /* |value| grows by less than 1 in a round */
+    t->kernels->multiply_add(found, factor, addend, t->size.width);
+    t->scalar->multiply_add(expected, factor, addend, t->size.width);
     for (int i = 0; i < PTIE_CHAIN_FLOATS; i++)
-        assert_near((double)found[i], (double)expected[i], 2 * t->width * gamma_n(2) * largest);
+        assert_near((double)found[i], (double)expected[i],
+                    2 * t->size.width * gamma_n(2) * largest);
     free(found);
 }
 
-/* All widths, with channels and heights that go round; then all channel counts. */
 static void run_cases(void (*test)(twin *)) {
     if (ptie_cpu_detect() == PTIE_CPU_SCALAR) skip();
     for (int level = 1; level <= (int)ptie_cpu_detect(); level++) {
         twin t = {.kernels = ptie_kernels_of((ptie_cpu_level)level),
                   .scalar = ptie_kernels_of(PTIE_CPU_SCALAR)};
         ptie_random_init(&t.random, 11, PTIE_STREAM_WEIGHTS, (uint64_t)level);
-        for (t.width = 1; t.width <= WIDEST; t.width++) {
-            t.in_channels = channel_counts[t.width % 9];
-            t.out_channels = channel_counts[t.width / 3 % 10];
-            t.height = 1 + t.width % 4;
+        for (int32_t i = 0; i < WIDEST + CHANNEL_COUNTS * CHANNEL_COUNTS; i++) {
+            t.size = block_case(i, WIDEST, channel_counts, CHANNEL_COUNTS);
             test(&t);
         }
-        for (int32_t i = 0; i < CHANNEL_COUNTS * CHANNEL_COUNTS; i++) {
-            static const int32_t widths[] = {5, 16, 37, 48};
-            t.in_channels = channel_counts[i % CHANNEL_COUNTS];
-            t.out_channels = channel_counts[i / CHANNEL_COUNTS];
-            t.width = widths[i % 4];
-            t.height = 1 + i % 5;
-            test(&t);
-        }
-        static const int32_t large[][4] = {{3, 9, 300, 18}, {2, 3, 40, 70}}; /* several tiles */
+        static const block_sizes large[] = {{3, 9, 300, 18}, {2, 3, 40, 70}}; /* several tiles */
         for (int i = 0; i < 2; i++) {
-            t.in_channels = large[i][0], t.out_channels = large[i][1];
-            t.width = large[i][2], t.height = large[i][3];
+            t.size = large[i];
             test(&t);
         }
     }

@@ -116,28 +116,33 @@ static void threads_do_not_change_a_bit(void **state) {
     }
 }
 
-/* A finished run resumes to nothing; a data set file goes on where its preset stopped. */
-static void a_file_continues_what_its_preset_began(void **state) {
-    (void)state;
-    const char *whole = support_temporary("drawn"), *path = support_temporary("mixed");
-    const char *file = support_temporary("samples.h5");
-    train_steps(whole, 1, 0, false);
-    train_steps(whole, 1, 0, true);
-    train_steps(path, 1, 9, false);
-
+/* Goes on at `path` with samples of a data set file; `edit`, or NULL, changes the file first. */
+static ptie_status resume_from_file(const char *path, const char *file, const char *edit) {
     ptie_ctx *ctx = tiny_context(2);
     ptie_preset *preset = tiny_preset(TINY_SIDE, "3 % .. 10 %");
     ptie_model *model = tiny_model();
     ptie_dataset *dataset;
     const ptie_train_params params = params_with(0, true);
     assert_ok(ptie_dataset_write(ctx, file, preset, 1, TINY_SAMPLES, false, silent));
+    if (edit) support_python(edit, file);
     assert_ok(ptie_dataset_open(&dataset, file));
-    assert_ok(ptie_train(ctx, model, dataset, path, &params, silent));
-    assert_same_run(path, whole);
+    const ptie_status status = ptie_train(ctx, model, dataset, path, &params, silent);
     ptie_dataset_free(dataset);
     ptie_model_free(model);
     ptie_preset_free(preset);
     ptie_ctx_free(ctx);
+    return status;
+}
+
+/* A finished run resumes to nothing; a data set file goes on where its preset stopped. */
+static void a_file_continues_what_its_preset_began(void **state) {
+    (void)state;
+    const char *whole = support_temporary("drawn"), *path = support_temporary("mixed");
+    train_steps(whole, 1, 0, false);
+    train_steps(whole, 1, 0, true);
+    train_steps(path, 1, 9, false);
+    assert_ok(resume_from_file(path, support_temporary("samples.h5"), NULL));
+    assert_same_run(path, whole);
 }
 
 static void assert_note(const char *path, const char *key, const char *expected) {
@@ -190,24 +195,13 @@ static void kernels_and_generator_are_noted(void **state) {
 /* As a data set file of a later revision would. */
 static void samples_of_another_generator_are_other_samples(void **state) {
     (void)state;
-    char path[256], file[256];
+    char path[256];
     snprintf(path, sizeof path, "%s", support_temporary("generator"));
-    snprintf(file, sizeof file, "%s", support_temporary("generator.h5"));
     train_steps(path, 1, 6, false);
-    ptie_ctx *ctx = tiny_context(1);
-    ptie_preset *preset = tiny_preset(TINY_SIDE, "3 % .. 10 %");
-    ptie_model *model = tiny_model();
-    ptie_dataset *dataset;
-    const ptie_train_params params = params_with(0, true);
-    assert_ok(ptie_dataset_write(ctx, file, preset, 1, TINY_SAMPLES, false, silent));
-    support_python("import h5py, sys\nh5py.File(sys.argv[1], 'a').attrs['generator'] = 7\n", file);
-    assert_ok(ptie_dataset_open(&dataset, file));
-    assert_fails(ptie_train(ctx, model, dataset, path, &params, silent), PTIE_EINVAL,
-                 "expected 'generator = 1', found 'generator = 7'");
-    ptie_dataset_free(dataset);
-    ptie_model_free(model);
-    ptie_preset_free(preset);
-    ptie_ctx_free(ctx);
+    assert_fails(resume_from_file(path, support_temporary("generator.h5"),
+                                  "import h5py, sys\n"
+                                  "h5py.File(sys.argv[1], 'a').attrs['generator'] = 7\n"),
+                 PTIE_EINVAL, "expected 'generator = 1', found 'generator = 7'");
 }
 
 static int stop_at_report(void *user, uint64_t done, uint64_t total, const char *note) {
