@@ -10,6 +10,13 @@
 #include <ptie/recording.h>
 #include <ptie/solver.h>
 
+/* Which planes a frame brings. */
+typedef enum ptie_planes {
+    PTIE_PLANES_PAIR = 0,     /* I+ and I- */
+    PTIE_PLANES_TRIPLE = 1,   /* I+, I0 and I-, steps may differ */
+    PTIE_PLANES_REFERENCE = 2 /* one defocused plane, and a no-flow reference of the same plane */
+} ptie_planes;
+
 typedef struct ptie_rig {
     uint32_t struct_size;    /* set by ptie_rig_init */
     double wavelength_m;     /* default 532e-9 */

@@ -12,9 +12,12 @@ static ptie_status check_params(const ptie_solver_params *p, const char *where) 
     PTIE_TRY(ptie_check_integer(p->height_px, 2, 32768, where, "height_px"));
     PTIE_TRY(ptie_check_number(p->pixel_m, 1e-9, 1, where, "pixel_m"));
     PTIE_TRY(ptie_check_number(p->wavelength_m, 1e-12, 1e-2, where, "wavelength_m"));
-    PTIE_TRY(ptie_check_number(p->defocus_plus_m, -1e3, 1e3, where, "defocus_plus_m"));
-    PTIE_TRY(ptie_check_number(p->defocus_minus_m, -1e3, 1e3, where, "defocus_minus_m"));
+    PTIE_TRY(ptie_check_integer(p->plane_count, 2, PTIE_MAX_PLANES, where, "plane_count"));
+    for (int32_t i = 0; i < p->plane_count; i++)
+        PTIE_TRY(ptie_check_number(p->z_m[i], -1e3, 1e3, where, "z_m"));
+    PTIE_TRY(ptie_check_integer(p->polynomial_order, 0, p->plane_count - 1, where, "polynomial_order"));
     PTIE_TRY(ptie_check_integer(p->boundary, PTIE_PERIODIC, PTIE_MIRROR, where, "boundary"));
+    PTIE_TRY(ptie_check_integer(p->method, PTIE_SOLVE_DIRECT, PTIE_SOLVE_DIRECT, where, "method"));
     return ptie_check_number(p->cutoff_m, 0, 1e6, where, "cutoff_m");
 }
 
@@ -34,20 +37,20 @@ size_t ptie_solver_scratch_bytes(const ptie_solver *solver) {
     return solver ? ptie_tie_scratch(solver) : 0;
 }
 
-ptie_status ptie_solver_run(const ptie_solver *solver, float *phase_rad, const float *i_plus,
-                            const float *i_zero, const float *i_minus, void *scratch) {
+ptie_status ptie_solver_run(const ptie_solver *solver, float *phase_rad, const float *const *planes,
+                            void *scratch, ptie_solver_report *report) {
     static const char where[] = "ptie_solver_run";
     PTIE_TRY(ptie_check_pointer(solver, where, "solver"));
     PTIE_TRY(ptie_check_pointer(phase_rad, where, "phase_rad"));
-    PTIE_TRY(ptie_check_pointer(i_plus, where, "i_plus"));
-    if (!i_zero && !i_minus)
-        return PTIE_FAIL(
-            PTIE_EINVAL,
-            "%s: a second plane is missing (expected i_zero, i_minus or both, found NULL)", where);
+    PTIE_TRY(ptie_check_pointer(planes, where, "planes"));
+    for (int32_t i = 0; i < ptie_tie_planes(solver); i++)
+        if (!planes[i])
+            return PTIE_FAIL(PTIE_EINVAL, "%s: planes[%d] is missing (expected %d pointers, found NULL)", where,
+                             i, ptie_tie_planes(solver));
     PTIE_TRY(ptie_check_scratch(scratch, where));
-    return ptie_tie_solve(solver, phase_rad, i_plus, i_zero, i_minus, scratch);
+    return ptie_tie_solve(solver, phase_rad, planes, scratch, report);
 }
 
-double ptie_solver_noise_rad(const ptie_solver *solver, ptie_planes planes, double sigma) {
-    return solver ? ptie_tie_noise_rad(solver, planes, sigma) : (double)NAN;
+double ptie_solver_noise_rad(const ptie_solver *solver, double sigma) {
+    return solver ? ptie_tie_noise_rad(solver, sigma) : (double)NAN;
 }

@@ -14,8 +14,8 @@ typedef struct solving {
 static ptie_status solve(void *context, int32_t worker) {
     const solving *s = context;
     const ptie_frames *f = &s->frames;
-    return ptie_tie_solve(s->solver, ptie_frame(f, f->c, worker), ptie_frame(f, f->a, worker), NULL,
-                          ptie_frame(f, f->b, worker), ptie_frame_scratch(f, worker));
+    const float *const planes[] = {ptie_frame(f, f->a, worker), ptie_frame(f, f->b, worker)};
+    return ptie_tie_solve(s->solver, ptie_frame(f, f->c, worker), planes, ptie_frame_scratch(f, worker), NULL);
 }
 
 static ptie_status measure(ptie_bench *bench, ptie_boundary boundary, int32_t side) {

@@ -6,10 +6,13 @@
 #include "base/memory.h"
 #include "metrics/metrics.h"
 #include "optics/optics.h"
+#include "run/planes.h"
 #include "tie/derivative.h"
 
 struct ptie_reprojection {
-    ptie_solver_params solver; /* says how the planes are weighed */
+    ptie_tie_weights weights;
+    int32_t width, height;
+    double defocus_m;
     ptie_optics *optics;
     size_t pixels, bytes; /* of one worker's scratch */
     unsigned char *scratch;
@@ -30,17 +33,17 @@ static work carve(const ptie_reprojection *r, ptie_slicer *slicer) {
     return w;
 }
 
-static ptie_status build(ptie_reprojection *r, const ptie_rig *rig, int32_t workers) {
-    const ptie_solver_params *s = &r->solver;
+static ptie_status build(ptie_reprojection *r, const ptie_solver_params *solver, int32_t workers) {
+    PTIE_TRY(ptie_tie_weigh(&r->weights, solver));
     /* Linear, so the distance is free: the one of the recording keeps the numbers near 1. */
     PTIE_TRY(ptie_optics_plan(&r->optics, &(ptie_optics_params){
                                               .struct_size = sizeof(ptie_optics_params),
-                                              .width_px = s->width_px,
-                                              .height_px = s->height_px,
-                                              .pixel_m = s->pixel_m,
-                                              .wavelength_m = s->wavelength_m,
-                                              .defocus_m = fabs(rig->defocus_plus_m),
-                                              .boundary = s->boundary,
+                                              .width_px = r->width,
+                                              .height_px = r->height,
+                                              .pixel_m = solver->pixel_m,
+                                              .wavelength_m = solver->wavelength_m,
+                                              .defocus_m = r->defocus_m,
+                                              .boundary = solver->boundary,
                                               .propagation = PTIE_TIE_SPECTRAL,
                                           }));
     ptie_slicer slicer = {0};
@@ -54,18 +57,12 @@ ptie_status ptie_reprojection_create(ptie_reprojection **out, const ptie_rig *ri
     *out = NULL;
     ptie_reprojection *r;
     PTIE_TRY(ptie_alloc_status(&r, 1, sizeof *r, "run"));
+    const ptie_solver_params solver = ptie_rig_solver(rig, width_px, height_px);
+    r->width = width_px;
+    r->height = height_px;
     r->pixels = (size_t)width_px * (size_t)height_px;
-    r->solver = (ptie_solver_params){
-        .struct_size = sizeof(ptie_solver_params),
-        .width_px = width_px,
-        .height_px = height_px,
-        .pixel_m = rig->pixel_m * rig->binning,
-        .wavelength_m = rig->wavelength_m,
-        .defocus_plus_m = rig->defocus_plus_m,
-        .defocus_minus_m = rig->defocus_minus_m,
-        .boundary = rig->boundary,
-    };
-    ptie_status status = build(r, rig, workers);
+    r->defocus_m = fabs(rig->defocus_plus_m);
+    ptie_status status = build(r, &solver, workers);
     if (status == PTIE_OK)
         *out = r;
     else
@@ -84,14 +81,15 @@ ptie_status ptie_reprojection_measure(const ptie_reprojection *r, int32_t worker
                                       const float *const *maps, size_t count, const float *i_plus,
                                       const float *i_zero, const float *i_minus) {
     const work w = carve(r, &(ptie_slicer){.base = r->scratch + (size_t)worker * r->bytes});
-    const double scale = 1 / (2 * fabs(r->solver.defocus_plus_m));
-    PTIE_TRY(ptie_tie_derivative(w.measured, &r->solver, i_plus, i_zero, i_minus));
+    const double scale = 1 / (2 * r->defocus_m);
+    const float *planes[3];
+    ptie_rig_order(planes, i_plus, i_zero, i_minus);
+    PTIE_TRY(ptie_tie_derivative(w.measured, &r->weights, planes, r->width, r->height));
     for (size_t n = 0; n < count; n++) {
         PTIE_TRY(ptie_optics_defocus(r->optics, w.plus, w.minus, maps[n], NULL, w.optics));
         for (size_t i = 0; i < r->pixels; i++)
             w.plus[i] = (float)(scale * ((double)w.plus[i] - (double)w.minus[i]));
-        PTIE_TRY(ptie_metrics_residual(&residual[n], w.plus, w.measured, r->solver.width_px,
-                                       r->solver.height_px));
+        PTIE_TRY(ptie_metrics_residual(&residual[n], w.plus, w.measured, r->width, r->height));
     }
     return PTIE_OK;
 }

@@ -4,6 +4,7 @@
 #include "base/image.h"
 #include "base/memory.h"
 #include "nn/nn.h"
+#include "run/planes.h"
 #include "tie/solver.h"
 
 struct ptie_frame_plan {
@@ -16,20 +17,6 @@ struct ptie_frame_plan {
     void **scratch; /* one block per worker */
 };
 
-static ptie_status plan_solver(ptie_frame_plan *plan, const ptie_rig *rig) {
-    return ptie_tie_plan(&plan->solver, &(ptie_solver_params){
-                                            .struct_size = sizeof(ptie_solver_params),
-                                            .width_px = plan->width,
-                                            .height_px = plan->height,
-                                            .pixel_m = rig->pixel_m * rig->binning,
-                                            .wavelength_m = rig->wavelength_m,
-                                            .defocus_plus_m = rig->defocus_plus_m,
-                                            .defocus_minus_m = rig->defocus_minus_m,
-                                            .boundary = rig->boundary,
-                                            .cutoff_m = rig->cutoff_m,
-                                        });
-}
-
 static size_t scratch_bytes(const ptie_frame_plan *plan) {
     size_t bytes = 2 * ((size_t)plan->width + (size_t)plan->height) * sizeof(float); /* pin_border */
     size_t solver = ptie_tie_scratch(plan->solver);
@@ -40,7 +27,8 @@ static size_t scratch_bytes(const ptie_frame_plan *plan) {
 
 static ptie_status build(ptie_frame_plan *plan, const ptie_engine *engine, const ptie_rig *rig,
                          const ptie_model *model, const ptie_denoiser_params *params) {
-    PTIE_TRY(plan_solver(plan, rig));
+    const ptie_solver_params solver = ptie_rig_solver(rig, plan->width, plan->height);
+    PTIE_TRY(ptie_tie_plan(&plan->solver, &solver));
     if (model)
         PTIE_TRY(ptie_nn_denoiser(&plan->denoiser, engine, model, plan->width, plan->height,
                                   params));
@@ -87,7 +75,9 @@ static void pin_border(float *phase, int32_t width, int32_t height, float *borde
 ptie_status ptie_frame_solve(const ptie_frame_plan *plan, int32_t worker, float *phase, float *denoised,
                              const float *i_plus, const float *i_zero, const float *i_minus) {
     void *scratch = plan->scratch[worker];
-    PTIE_TRY(ptie_tie_solve(plan->solver, phase, i_plus, i_zero, i_minus, scratch));
+    const float *planes[3];
+    ptie_rig_order(planes, i_plus, i_zero, i_minus);
+    PTIE_TRY(ptie_tie_solve(plan->solver, phase, planes, scratch, NULL));
     if (plan->zero_border) pin_border(phase, plan->width, plan->height, scratch);
     if (!plan->denoiser) return PTIE_OK;
     return ptie_nn_denoise_rad(plan->denoiser, denoised, phase, plan->polarity, scratch);

@@ -2,131 +2,96 @@
 #include "tie/derivative.h"
 
 #include <assert.h>
-#include <math.h>
 
 #include "base/clones.h"
 #include "base/image.h"
+#include "base/text.h"
 
-#define LEAST_STEP_M 1e-9
+enum { BLOCK = 512 }; /* pixels of a pass whose sums stay in the cache */
 
-static ptie_status weigh_pair(ptie_tie_weights *weights, double plus_m, double minus_m) {
-    if (plus_m - minus_m < LEAST_STEP_M)
-        return PTIE_FAIL(
-            PTIE_EINVAL,
-            "solver: distances do not fit a pair of planes (expected defocus_minus_m < "
-            "defocus_plus_m, found %g and %g)",
-            minus_m, plus_m);
-    weights->plus = 1 / (plus_m - minus_m);
-    weights->minus = -weights->plus;
-    return PTIE_OK;
-}
-
-/* Derivative at z = 0 of the parabola through the three planes (M4b). */
-static ptie_status weigh_triple(ptie_tie_weights *weights, double plus_m, double minus_m) {
-    if (plus_m < LEAST_STEP_M || minus_m > -LEAST_STEP_M)
-        return PTIE_FAIL(
-            PTIE_EINVAL,
-            "solver: distances do not fit three planes (expected defocus_minus_m < 0 < "
-            "defocus_plus_m, found %g and %g)",
-            minus_m, plus_m);
-    const double up = plus_m, down = -minus_m;
-    weights->plus = down / (up * (up + down));
-    weights->minus = -up / (down * (up + down));
-    weights->zero = (up - down) / (up * down);
-    return PTIE_OK;
-}
-
-static ptie_status weigh_reference(ptie_tie_weights *weights, double plus_m) {
-    if (fabs(plus_m) < LEAST_STEP_M)
-        return PTIE_FAIL(PTIE_EINVAL,
-                         "solver: distance does not fit a defocused plane (expected defocus_plus_m "
-                         "other than 0, found %g)",
-                         plus_m);
-    weights->plus = 1 / plus_m;
-    weights->zero = -weights->plus;
-    return PTIE_OK;
-}
-
-ptie_status ptie_tie_weigh(ptie_tie_weights *weights, ptie_planes planes,
-                           const ptie_solver_params *params) {
-    *weights = (ptie_tie_weights){0};
-    switch (planes) {
-    case PTIE_PLANES_PAIR:
-        return weigh_pair(weights, params->defocus_plus_m, params->defocus_minus_m);
-    case PTIE_PLANES_TRIPLE:
-        return weigh_triple(weights, params->defocus_plus_m, params->defocus_minus_m);
-    case PTIE_PLANES_REFERENCE: return weigh_reference(weights, params->defocus_plus_m);
-    }
-    return PTIE_FAIL(PTIE_EINVAL, "solver: unknown planes (expected 0..2, found %d)", (int)planes);
-}
-
-/* Mean of (I+ + I-) / 2. */
-PTIE_CLONES static double mean_of_pair(const float *i_plus, const float *i_minus, size_t count) {
+/* Mean of all planes. */
+PTIE_CLONES static double mean_of_planes(const float *const *planes, int32_t count, size_t pixels) {
     enum { LANES = 16 };
     double lane[LANES] = {0}, sum = 0;
     size_t i = 0;
-    for (; i + LANES <= count; i += LANES)
-        for (int k = 0; k < LANES; k++) lane[k] += (double)i_plus[i + (size_t)k] + (double)i_minus[i + (size_t)k];
-    for (; i < count; i++) sum += (double)i_plus[i] + (double)i_minus[i];
+    for (; i + LANES <= pixels; i += LANES)
+        for (int k = 0; k < LANES; k++) {
+            double total = (double)planes[0][i + (size_t)k];
+            for (int32_t p = 1; p < count; p++) total += (double)planes[p][i + (size_t)k];
+            lane[k] += total;
+        }
+    for (; i < pixels; i++) {
+        double total = (double)planes[0][i];
+        for (int32_t p = 1; p < count; p++) total += (double)planes[p][i];
+        sum += total;
+    }
     for (int k = 0; k < LANES; k++) sum += lane[k];
-    return sum / (2 * (double)count);
+    return sum / ((double)count * (double)pixels);
 }
 
-PTIE_CLONES static void scale_difference(float *difference, const float *a, const float *b,
-                                         double scale, size_t count) {
-    for (size_t i = 0; i < count; i++)
-        difference[i] = (float)(scale * ((double)a[i] - (double)b[i]));
+PTIE_CLONES static void add_difference(double *sum, const float *plane, const float *base, double weight,
+                                       size_t count) {
+    for (size_t i = 0; i < count; i++) sum[i] += weight * ((double)plane[i] - (double)base[i]);
 }
 
-static ptie_status pair_derivative(float *derivative, const ptie_tie_weights *weights,
-                                   const float *i_plus, const float *i_minus, size_t count) {
-    const double mean = mean_of_pair(i_plus, i_minus, count);
-    if (!(mean > 0))
-        return PTIE_FAIL(PTIE_ENUMERIC,
-                         "i_plus, i_minus: mean intensity is not positive (expected > 0, found %g)",
-                         mean);
-    scale_difference(derivative, i_plus, i_minus, weights->plus / mean, count);
-    return PTIE_OK;
+PTIE_CLONES static void divide(float *out, const double *sum, const float *by, size_t count) {
+    for (size_t i = 0; i < count; i++) out[i] = (float)(sum[i] / (double)by[i]);
 }
 
-static ptie_status check_divisor(const float *i_zero, size_t width, size_t height) {
-    for (size_t i = 0; i < width * height; i++)
-        if (!(i_zero[i] > 0))
-            return PTIE_FAIL(PTIE_ENUMERIC,
-                             "i_zero: intensity to divide by is not positive (at x=%zu, y=%zu; "
-                             "expected > 0, found %g)",
-                             i % width, i / width, (double)i_zero[i]);
-    return PTIE_OK;
+PTIE_CLONES static void narrow(float *out, const double *sum, size_t count) {
+    for (size_t i = 0; i < count; i++) out[i] = (float)sum[i];
 }
 
-/* With I0 measured, every pixel is divided by its own.  i_minus NULL: its weight is 0.  The weights
-   sum to 0, so differences from I0 are weighed: what is common to the planes cancels exactly. */
-PTIE_CLONES static void pixelwise_derivative(float *derivative, const ptie_tie_weights *weights,
-                                 const float *i_plus, const float *i_zero, const float *i_minus,
-                                 size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        const double zero = (double)i_zero[i];
-        double sum = weights->plus * ((double)i_plus[i] - zero);
-        if (i_minus) sum += weights->minus * ((double)i_minus[i] - zero);
-        derivative[i] = (float)(sum / zero);
+/* The weights sum to 0, so differences from one plane are weighed: what is common to the planes cancels
+   exactly.  divisor: of every weight. */
+static void weigh_planes(float *derivative, const ptie_tie_weights *w, const float *const *planes,
+                         double divisor, size_t pixels) {
+    for (size_t start = 0; start < pixels; start += BLOCK) {
+        const size_t count = pixels - start < BLOCK ? pixels - start : BLOCK;
+        const float *base = planes[w->base] + start;
+        double sum[BLOCK] = {0};
+        for (int32_t p = 0; p < w->count; p++)
+            if (p != w->base) add_difference(sum, planes[p] + start, base, w->weight[p] / divisor, count);
+        if (w->pixelwise)
+            divide(derivative + start, sum, base, count);
+        else
+            narrow(derivative + start, sum, count);
     }
 }
 
-ptie_status ptie_tie_derivative(float *derivative, const ptie_solver_params *params,
-                                const float *i_plus, const float *i_zero, const float *i_minus) {
-    assert(i_plus && (i_zero || i_minus));
-    const int32_t w = params->width_px, h = params->height_px;
-    const ptie_planes planes = !i_zero    ? PTIE_PLANES_PAIR
-                               : !i_minus ? PTIE_PLANES_REFERENCE
-                                          : PTIE_PLANES_TRIPLE;
-    ptie_tie_weights weights;
-    PTIE_TRY(ptie_tie_weigh(&weights, planes, params));
-    PTIE_TRY(ptie_image_finite(i_plus, w, h, "i_plus"));
-    if (i_minus) PTIE_TRY(ptie_image_finite(i_minus, w, h, "i_minus"));
-    if (!i_zero)
-        return pair_derivative(derivative, &weights, i_plus, i_minus, (size_t)w * (size_t)h);
-    PTIE_TRY(ptie_image_finite(i_zero, w, h, "i_zero"));
-    PTIE_TRY(check_divisor(i_zero, (size_t)w, (size_t)h));
-    pixelwise_derivative(derivative, &weights, i_plus, i_zero, i_minus, (size_t)w * (size_t)h);
+static ptie_status check_divisor(const float *base, int32_t plane, size_t width, size_t height) {
+    for (size_t i = 0; i < width * height; i++)
+        if (!(base[i] > 0))
+            return PTIE_FAIL(PTIE_ENUMERIC,
+                             "plane %d (in focus or reference): intensity to divide by is not positive "
+                             "(at x=%zu, y=%zu; expected > 0, found %g)",
+                             plane, i % width, i / width, (double)base[i]);
+    return PTIE_OK;
+}
+
+static ptie_status check_finite(const ptie_tie_weights *w, const float *const *planes, int32_t width,
+                                int32_t height) {
+    for (int32_t p = 0; p < w->count; p++) {
+        char name[64];
+        ptie_print(name, sizeof name, "plane %d (z = %g m)", p, w->z_m[p]);
+        PTIE_TRY(ptie_image_finite(planes[p], width, height, name));
+    }
+    return PTIE_OK;
+}
+
+ptie_status ptie_tie_derivative(float *derivative, const ptie_tie_weights *weights,
+                                const float *const *planes, int32_t width_px, int32_t height_px) {
+    const size_t pixels = (size_t)width_px * (size_t)height_px;
+    PTIE_TRY(check_finite(weights, planes, width_px, height_px));
+    double divisor = 1;
+    if (weights->pixelwise)
+        PTIE_TRY(check_divisor(planes[weights->base], weights->base, (size_t)width_px, (size_t)height_px));
+    else {
+        divisor = mean_of_planes(planes, weights->count, pixels);
+        if (!(divisor > 0))
+            return PTIE_FAIL(PTIE_ENUMERIC,
+                             "planes: mean intensity is not positive (expected > 0, found %g)", divisor);
+    }
+    weigh_planes(derivative, weights, planes, divisor, pixels);
     return PTIE_OK;
 }

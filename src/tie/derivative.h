@@ -1,22 +1,24 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* dI/dz relative to the intensity, from the planes that there are.  docs/math.md (M4), (M4b),
- * (M4c). */
+/* dI/dz relative to the intensity, from the planes that there are.  docs/math.md (M4)-(M4d). */
 #ifndef PTIE_TIE_DERIVATIVE_H
 #define PTIE_TIE_DERIVATIVE_H
 
 #include "tie/solver.h"
 
-/* dI/dz = plus I+ + zero I0 + minus I-, in 1/m; the weights sum to 0. */
+/* dI/dz = sum of weight[i] plane[i], in 1/m; the weights sum to 0. */
 typedef struct ptie_tie_weights {
-    double plus, zero, minus;
+    int32_t count;
+    int32_t base;  /* plane that the others are compared with: the one nearest to z = 0 */
+    bool pixelwise;/* base lies at z = 0: divide by it; else by the mean of all planes */
+    double weight[PTIE_MAX_PLANES];
+    double z_m[PTIE_MAX_PLANES];
 } ptie_tie_weights;
 
-/* PTIE_EINVAL if the distances do not fit the planes. */
-ptie_status ptie_tie_weigh(ptie_tie_weights *weights, ptie_planes planes,
-                           const ptie_solver_params *params);
+/* PTIE_EINVAL if two planes coincide. */
+ptie_status ptie_tie_weigh(ptie_tie_weights *weights, const ptie_solver_params *params);
 
-/* derivative (out): (dI/dz) / I in 1/m.  i_zero and i_minus may be NULL as in ptie_solver_run. */
-ptie_status ptie_tie_derivative(float *derivative, const ptie_solver_params *params,
-                                const float *i_plus, const float *i_zero, const float *i_minus);
+/* derivative (out): (dI/dz) / I in 1/m.  Errors: those of ptie_solver_run. */
+ptie_status ptie_tie_derivative(float *derivative, const ptie_tie_weights *weights,
+                                const float *const *planes, int32_t width_px, int32_t height_px);
 
 #endif

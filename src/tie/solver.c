@@ -15,6 +15,7 @@
 
 struct ptie_solver {
     ptie_solver_params params;
+    ptie_tie_weights weights;
     ptie_fft *fft;
     float *filter; /* rad m: phase per (dI/dz) / I */
 };
@@ -26,8 +27,8 @@ void ptie_solver_params_init(ptie_solver_params *params) {
         .height_px = 256,
         .pixel_m = 20e-6,
         .wavelength_m = 532e-9,
-        .defocus_plus_m = 10e-3,
-        .defocus_minus_m = -10e-3,
+        .plane_count = 2,
+        .z_m = {10e-3, -10e-3},
         .boundary = PTIE_PERIODIC,
     };
 }
@@ -41,6 +42,7 @@ static double inverse_response(double k2, const void *context) {
 
 static ptie_status prepare(ptie_solver *solver) {
     const ptie_solver_params *p = &solver->params;
+    PTIE_TRY(ptie_tie_weigh(&solver->weights, p));
     PTIE_TRY(ptie_fft_create(&solver->fft,
                              p->boundary == PTIE_MIRROR ? PTIE_FFT_MIRROR : PTIE_FFT_REAL,
                              p->width_px, p->height_px));
@@ -71,6 +73,10 @@ void ptie_solver_free(ptie_solver *solver) {
     ptie_free(solver);
 }
 
+int32_t ptie_tie_planes(const ptie_solver *solver) {
+    return solver->params.plane_count;
+}
+
 typedef struct work {
     float *image, *spectrum;
 } work;
@@ -88,22 +94,24 @@ size_t ptie_tie_scratch(const ptie_solver *solver) {
     return slicer.used;
 }
 
-ptie_status ptie_tie_solve(const ptie_solver *solver, float *phase_rad, const float *i_plus,
-                           const float *i_zero, const float *i_minus, void *scratch) {
+ptie_status ptie_tie_solve(const ptie_solver *solver, float *phase_rad, const float *const *planes,
+                           void *scratch, ptie_solver_report *report) {
     assert((uintptr_t)scratch % PTIE_ALIGNMENT == 0);
     const work w = carve(solver, &(ptie_slicer){.base = scratch});
-    PTIE_TRY(ptie_tie_derivative(w.image, &solver->params, i_plus, i_zero, i_minus));
+    const ptie_solver_params *p = &solver->params;
+    PTIE_TRY(ptie_tie_derivative(w.image, &solver->weights, planes, p->width_px, p->height_px));
     ptie_fft_forward(solver->fft, w.spectrum, w.image);
     ptie_fft_filter_apply(solver->fft, w.spectrum, solver->filter);
     ptie_fft_inverse(solver->fft, w.image, w.spectrum);
     memcpy(phase_rad, w.image, ptie_fft_image_floats(solver->fft) * sizeof *phase_rad);
+    if (report) *report = (ptie_solver_report){.iterations = 1};
     return PTIE_OK;
 }
 
 /* White noise of variance v per pixel of dI/dz leaves v times the filter's mean power (M8). */
-double ptie_tie_noise_rad(const ptie_solver *solver, ptie_planes planes, double sigma) {
-    ptie_tie_weights w;
-    if (ptie_tie_weigh(&w, planes, &solver->params) != PTIE_OK) return (double)NAN;
-    const double power = ptie_fft_filter_power(solver->fft, solver->filter);
-    return sigma * sqrt((w.plus * w.plus + w.zero * w.zero + w.minus * w.minus) * power);
+double ptie_tie_noise_rad(const ptie_solver *solver, double sigma) {
+    const ptie_tie_weights *w = &solver->weights;
+    double squares = 0;
+    for (int32_t i = 0; i < w->count; i++) squares += w->weight[i] * w->weight[i];
+    return sigma * sqrt(squares * ptie_fft_filter_power(solver->fft, solver->filter));
 }

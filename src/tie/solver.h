@@ -8,9 +8,10 @@
 #include "base/status.h"
 
 ptie_status ptie_tie_plan(ptie_solver **out, const ptie_solver_params *params);
+int32_t ptie_tie_planes(const ptie_solver *solver); /* of a frame */
 size_t ptie_tie_scratch(const ptie_solver *solver);
-ptie_status ptie_tie_solve(const ptie_solver *solver, float *phase_rad, const float *i_plus,
-                           const float *i_zero, const float *i_minus, void *scratch);
-double ptie_tie_noise_rad(const ptie_solver *solver, ptie_planes planes, double sigma);
+ptie_status ptie_tie_solve(const ptie_solver *solver, float *phase_rad, const float *const *planes,
+                           void *scratch, ptie_solver_report *report);
+double ptie_tie_noise_rad(const ptie_solver *solver, double sigma);
 
 #endif

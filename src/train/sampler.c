@@ -37,8 +37,8 @@ static ptie_status plan_solver(ptie_sampler *sampler) {
     params.height_px = preset->height_px;
     params.pixel_m = preset->pixel_m;
     params.wavelength_m = preset->wavelength_m;
-    params.defocus_plus_m = preset->defocus_m;
-    params.defocus_minus_m = -preset->defocus_m;
+    params.z_m[0] = preset->defocus_m;
+    params.z_m[1] = -preset->defocus_m;
     params.boundary = (ptie_boundary)preset->boundary;
     return ptie_tie_plan(&sampler->solver, &params);
 }
@@ -135,7 +135,8 @@ ptie_status ptie_sampler_draw(const ptie_sampler *sampler, uint64_t seed, uint64
     PTIE_TRY(ptie_optics_defocus(sampler->optics, d.i_plus, d.i_minus, clean, NULL, d.plan));
     ptie_add_gaussian_noise(d.i_plus, pixels, sigma, seed, PTIE_STREAM_NOISE_PLUS, index);
     ptie_add_gaussian_noise(d.i_minus, pixels, sigma, seed, PTIE_STREAM_NOISE_MINUS, index);
-    PTIE_TRY(ptie_tie_solve(sampler->solver, noisy, d.i_plus, NULL, d.i_minus, d.plan));
+    PTIE_TRY(ptie_tie_solve(sampler->solver, noisy, (const float *const[]){d.i_plus, d.i_minus}, d.plan,
+                            NULL));
 
     normalise(clean, pixels, &drawn.clean_offset_rad, &drawn.clean_scale_rad);
     normalise(noisy, pixels, &drawn.noisy_offset_rad, &drawn.noisy_scale_rad);

@@ -82,8 +82,8 @@ static void planes_are_those_of_the_truth(void **state) {
     for (int t = 0; t < FRAMES; t++) {
         float *map = truth + t * SIDE * SIDE;
         double mean = 0, peak = 0;
-        assert_ok(ptie_solver_run(solver, phase, plus + t * SIDE * SIDE, NULL,
-                                  minus + t * SIDE * SIDE, scratch));
+        const float *const planes[] = {plus + t * SIDE * SIDE, minus + t * SIDE * SIDE};
+        assert_ok(ptie_solver_run(solver, phase, planes, scratch, NULL));
         for (int i = 0; i < SIDE * SIDE; i++) {
             mean += (double)map[i] / (SIDE * SIDE);
             peak = fmax(peak, (double)map[i]);

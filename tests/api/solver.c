@@ -39,7 +39,7 @@ static void params_init_sets_the_documented_defaults(void **state) {
     assert_int_equal(p.struct_size, sizeof p);
     assert_true(p.width_px == 256 && p.height_px == 256 && p.pixel_m == 20e-6);
     assert_true(p.wavelength_m == 532e-9 && p.boundary == PTIE_PERIODIC && p.cutoff_m == 0);
-    assert_true(p.defocus_plus_m == 10e-3 && p.defocus_minus_m == -10e-3);
+    assert_true(p.plane_count == 2 && p.z_m[0] == 10e-3 && p.z_m[1] == -10e-3);
 }
 
 static void refuse(ptie_ctx *ctx, ptie_solver_params params, const char *message) {
@@ -59,10 +59,18 @@ static void create_checks_every_parameter(void **state) {
     refuse(*state, p, "pixel_m is out of range");
     p = good, p.wavelength_m = 532; /* forgot the nano */
     refuse(*state, p, "wavelength_m is out of range (expected 1e-12..0.01, found 532)");
-    p = good, p.defocus_plus_m = (double)INFINITY;
-    refuse(*state, p, "defocus_plus_m is out of range");
-    p = good, p.defocus_minus_m = (double)NAN;
-    refuse(*state, p, "defocus_minus_m is out of range");
+    p = good, p.plane_count = 1;
+    refuse(*state, p, "plane_count is out of range (expected 2..8, found 1)");
+    p = good, p.z_m[0] = (double)INFINITY;
+    refuse(*state, p, "z_m is out of range");
+    p = good, p.z_m[1] = (double)NAN;
+    refuse(*state, p, "z_m is out of range");
+    p = good, p.z_m[1] = p.z_m[0];
+    refuse(*state, p, "planes 0 and 1 lie at the same place");
+    p = good, p.polynomial_order = 2;
+    refuse(*state, p, "polynomial_order is out of range (expected 0..1, found 2)");
+    p = good, p.method = (ptie_solver_method)99;
+    refuse(*state, p, "method is out of range");
     p = good, p.boundary = (ptie_boundary)-1;
     refuse(*state, p, "boundary is out of range");
     p = good, p.cutoff_m = -1;
@@ -80,37 +88,44 @@ static void run_checks_every_pointer(void **state) {
     unsigned char *scratch = ptie_scratch_alloc(ptie_solver_scratch_bytes(solver));
     float image[PIXELS], phase[PIXELS];
     for (int i = 0; i < PIXELS; i++) image[i] = 1;
-    assert_ok(ptie_solver_run(solver, phase, image, NULL, image, scratch));
+    const float *const planes[] = {image, image}, *const missing[] = {image, NULL};
+    ptie_solver_report report = {.iterations = -1, .residual = -1};
+    assert_ok(ptie_solver_run(solver, phase, planes, scratch, &report));
+    assert_true(report.iterations == 1 && report.residual == 0);
     for (int i = 0; i < PIXELS; i++) assert_true(phase[i] == 0);
-    assert_ok(ptie_solver_run(solver, phase, image, image, image, scratch));
-    assert_ok(ptie_solver_run(solver, phase, image, image, NULL, scratch));
-    assert_fails(ptie_solver_run(solver, phase, image, NULL, NULL, scratch), PTIE_EINVAL,
-                 "ptie_solver_run: a second plane is missing");
-    assert_fails(ptie_solver_run(solver, phase, NULL, image, image, scratch), PTIE_EINVAL,
-                 "i_plus is missing");
-    assert_fails(ptie_solver_run(solver, NULL, image, image, image, scratch), PTIE_EINVAL,
-                 "phase_rad is missing");
-    assert_fails(ptie_solver_run(NULL, phase, image, image, image, scratch), PTIE_EINVAL,
-                 "solver is missing");
-    assert_fails(ptie_solver_run(solver, phase, image, image, image, NULL), PTIE_EINVAL,
-                 "scratch is missing");
-    assert_fails(ptie_solver_run(solver, phase, image, image, image, scratch + 8), PTIE_EINVAL,
+    assert_fails(ptie_solver_run(solver, phase, missing, scratch, NULL), PTIE_EINVAL,
+                 "ptie_solver_run: planes[1] is missing (expected 2 pointers, found NULL)");
+    assert_fails(ptie_solver_run(solver, phase, NULL, scratch, NULL), PTIE_EINVAL, "planes is missing");
+    assert_fails(ptie_solver_run(solver, NULL, planes, scratch, NULL), PTIE_EINVAL, "phase_rad is missing");
+    assert_fails(ptie_solver_run(NULL, phase, planes, scratch, NULL), PTIE_EINVAL, "solver is missing");
+    assert_fails(ptie_solver_run(solver, phase, planes, NULL, NULL), PTIE_EINVAL, "scratch is missing");
+    assert_fails(ptie_solver_run(solver, phase, planes, scratch + 8, NULL), PTIE_EINVAL,
                  "scratch is not aligned");
     ptie_scratch_free(scratch);
     ptie_solver_free(solver);
 }
 
-static void noise_is_proportional_and_ordered(void **state) {
-    ptie_solver *solver = small_solver(*state);
-    const double pair = ptie_solver_noise_rad(solver, PTIE_PLANES_PAIR, 0.01);
-    assert_true(pair > 0);
-    assert_near(ptie_solver_noise_rad(solver, PTIE_PLANES_PAIR, 0.02), 2 * pair, 1e-12);
-    /* Equal steps give the plane in focus no weight; half the distance has twice the noise. */
-    assert_near(ptie_solver_noise_rad(solver, PTIE_PLANES_TRIPLE, 0.01), pair, 1e-12);
-    assert_near(ptie_solver_noise_rad(solver, PTIE_PLANES_REFERENCE, 0.01), 2 * pair, 1e-12);
-    assert_true(isnan(ptie_solver_noise_rad(NULL, PTIE_PLANES_PAIR, 0.01)));
-    assert_true(isnan(ptie_solver_noise_rad(solver, (ptie_planes)3, 0.01)));
+static double noise_of(ptie_ctx *ctx, int32_t count, const double *z_m, double sigma) {
+    ptie_solver_params p;
+    ptie_solver_params_init(&p);
+    p.width_px = W, p.height_px = H, p.plane_count = count;
+    memcpy(p.z_m, z_m, (size_t)count * sizeof *z_m);
+    ptie_solver *solver;
+    assert_ok(ptie_solver_create(&solver, ctx, &p));
+    const double noise = ptie_solver_noise_rad(solver, sigma);
     ptie_solver_free(solver);
+    return noise;
+}
+
+static void noise_is_proportional_and_ordered(void **state) {
+    static const double planes[] = {10e-3, -10e-3, 0}, reference[] = {10e-3, 0};
+    const double pair = noise_of(*state, 2, planes, 0.01);
+    assert_true(pair > 0);
+    assert_near(noise_of(*state, 2, planes, 0.02), 2 * pair, 1e-12);
+    /* Equal steps give the plane in focus no weight; half the distance has twice the noise. */
+    assert_near(noise_of(*state, 3, planes, 0.01), pair, 1e-12);
+    assert_near(noise_of(*state, 2, reference, 0.01), 2 * pair, 1e-12);
+    assert_true(isnan(ptie_solver_noise_rad(NULL, 0.01)));
 }
 
 static void nothing_is_a_fine_thing_to_free(void **state) {
@@ -128,9 +143,10 @@ typedef struct job {
 
 static void *work(void *argument) {
     job *j = argument;
+    const float *const planes[] = {j->plus, j->minus};
     void *scratch = ptie_scratch_alloc(ptie_solver_scratch_bytes(j->solver));
     for (int i = 0; i < 50 && j->status == PTIE_OK; i++)
-        j->status = ptie_solver_run(j->solver, j->phase, j->plus, NULL, j->minus, scratch);
+        j->status = ptie_solver_run(j->solver, j->phase, planes, scratch, NULL);
     ptie_scratch_free(scratch);
     return NULL;
 }

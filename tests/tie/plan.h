@@ -28,26 +28,50 @@ static inline float *image_of(int32_t w, int32_t h) {
     return image;
 }
 
+/* The same set-up with other planes. */
+static inline ptie_solver_params with_planes(ptie_solver_params params, int32_t count, const double *z_m) {
+    params.plane_count = count;
+    for (int32_t i = 0; i < count; i++) params.z_m[i] = z_m[i];
+    return params;
+}
+
+/* I+ and I- of the params; with the plane in focus between them; I+ and its reference. */
+static inline ptie_solver_params with_focus(ptie_solver_params params) {
+    return with_planes(params, 3, (const double[]){params.z_m[0], 0, params.z_m[1]});
+}
+
+static inline ptie_solver_params with_reference(ptie_solver_params params) {
+    return with_planes(params, 2, (const double[]){params.z_m[0], 0});
+}
+
 /* One run of a plan made for it. */
-static inline ptie_status solve(const ptie_solver_params *params, float *phase, const float *plus,
-                                const float *zero, const float *minus) {
+static inline ptie_status solve_planes(const ptie_solver_params *params, float *phase,
+                                       const float *const *planes) {
     ptie_solver *solver;
     assert_ok(ptie_tie_plan(&solver, params));
     void *scratch = ptie_alloc(ptie_tie_scratch(solver), 1);
     assert_non_null(scratch);
-    const ptie_status status = ptie_tie_solve(solver, phase, plus, zero, minus, scratch);
+    const ptie_status status = ptie_tie_solve(solver, phase, planes, scratch, NULL);
     ptie_free(scratch);
     ptie_solver_free(solver);
     return status;
 }
 
-/* Linear TIE images at +-defocus_plus_m of the params. */
+/* The planes of the pair `params`; with the image in focus or the reference, `zero`, where there is one. */
+static inline ptie_status solve(const ptie_solver_params *params, float *phase, const float *plus,
+                                const float *zero, const float *minus) {
+    if (!zero) return solve_planes(params, phase, (const float *const[]){plus, minus});
+    const ptie_solver_params p = minus ? with_focus(*params) : with_reference(*params);
+    return solve_planes(&p, phase, (const float *const[]){plus, zero, minus});
+}
+
+/* Images at +-z_m[0] of the params. */
 static inline void forward(const ptie_solver_params *params, float *plus, float *minus,
                            const float *phase, ptie_propagation propagation) {
     ptie_optics_params p;
     ptie_optics_params_init(&p);
     p.width_px = params->width_px, p.height_px = params->height_px, p.pixel_m = params->pixel_m;
-    p.wavelength_m = params->wavelength_m, p.defocus_m = params->defocus_plus_m;
+    p.wavelength_m = params->wavelength_m, p.defocus_m = params->z_m[0];
     p.boundary = params->boundary, p.propagation = propagation;
     ptie_optics *optics;
     assert_ok(ptie_optics_plan(&optics, &p));
@@ -90,7 +114,7 @@ static inline double rounding_rad(const ptie_solver_params *params, const float 
     assert_ok(ptie_tie_plan(&solver, params));
     /* (I+ - I-) / 2 has sigma / sqrt 2. */
     const double sigma = sqrt(2) * (3e-8 + 1.5e-6 * sqrt(squares / (4 * count)));
-    const double rounding = ptie_tie_noise_rad(solver, PTIE_PLANES_PAIR, sigma);
+    const double rounding = ptie_tie_noise_rad(solver, sigma);
     ptie_solver_free(solver);
     return rounding;
 }

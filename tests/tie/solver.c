@@ -2,6 +2,8 @@
 /* The solver undoes the forward model and meets closed forms, for every kind of input. */
 #include "tie/plan.h"
 
+#include "tie/derivative.h"
+
 static const int32_t frames[][2] = {{64, 48}, {97, 61}, {256, 256}, {33, 128}, {8, 8}};
 enum { FRAMES = sizeof frames / sizeof *frames };
 
@@ -66,7 +68,7 @@ static void eigenfunctions_come_back_positive(void **state) {
             expected[i] = (float)mode;
             derivative[i] = p.wavelength_m / (2 * PI) * (kx * kx + ky * ky) * mode;
         }
-        planes_of(plus, minus, derivative, W * H, p.defocus_plus_m);
+        planes_of(plus, minus, derivative, W * H, p.z_m[0]);
         assert_ok(solve(&p, found, plus, NULL, minus));
         /* Measured 1.2e-7: rounding of I, 3e-8, against signals of 0.1 and more, k^-2 amplified. */
         assert_near(support_relative_error(found, expected, W * H), 0, 2e-6);
@@ -91,7 +93,7 @@ static void a_gaussian_phase_comes_back(void **state) {
             mean += phase / (N * N);
         }
         for (int32_t i = 0; i < N * N; i++) expected[i] -= (float)mean;
-        planes_of(plus, minus, derivative, N * N, p.defocus_plus_m);
+        planes_of(plus, minus, derivative, N * N, p.z_m[0]);
         assert_ok(solve(&p, found, plus, NULL, minus));
         /* The tails at the frame are 1e-16; measured 4e-7. */
         assert_near(support_relative_error(found, expected, N * N), 0, 2e-6);
@@ -103,7 +105,7 @@ static void unequal_steps_are_exact_on_parabolas(void **state) {
     (void)state;
     enum { W = 40, H = 30 };
     ptie_solver_params p = solver_params(PTIE_MIRROR, W, H);
-    p.defocus_plus_m = 15e-3, p.defocus_minus_m = -6e-3;
+    p.z_m[0] = 15e-3, p.z_m[1] = -6e-3;
     ptie_solver_params even = solver_params(PTIE_MIRROR, W, H);
     float phase[W * H], slope[W * H], curve[W * H], plus[W * H], zero[W * H], minus[W * H],
         found[W * H];
@@ -149,7 +151,7 @@ static void a_reference_replaces_the_second_plane(void **state) {
             reference[i] = 100 + 50 * (float)sin(0.3 * i);
             flow[i] *= reference[i];
         }
-        p.defocus_plus_m = side * 10e-3;
+        p.z_m[0] = side * 10e-3;
         assert_ok(solve(&p, found, flow, reference, NULL));
         assert_near(support_relative_error(found, phase, W * H), 0, 1e-5);
     }
@@ -202,7 +204,7 @@ static void diffraction_biases_as_the_validity_bound_says(void **state) {
     for (int mode = 4; mode <= 16; mode += 4) {
         float phase[N * N], plus[N * N], minus[N * N], found[N * N];
         const double k = PI * mode / (N * p.pixel_m);
-        const double chi = k * k * p.defocus_plus_m * p.wavelength_m / (4 * PI);
+        const double chi = k * k * p.z_m[0] * p.wavelength_m / (4 * PI);
         for (int32_t i = 0; i < N * N; i++)
             phase[i] = (float)(0.01 * cos(k * p.pixel_m * (i % N + 0.5)));
         forward(&p, plus, minus, phase, PTIE_ANGULAR_SPECTRUM);
@@ -226,35 +228,76 @@ static void bad_images_are_named_with_their_pixel(void **state) {
     for (int i = 0; i < W * H; i++) good[i] = bad[i] = 1, phase[i] = 77;
     bad[3 * W + 2] = NAN;
     assert_fails(solve(&p, phase, bad, NULL, good), PTIE_ENUMERIC,
-                 "i_plus: value is not finite (at x=2, y=3");
+                 "plane 0 (z = 0.01 m): value is not finite (at x=2, y=3");
     assert_fails(solve(&p, phase, good, NULL, bad), PTIE_ENUMERIC,
-                 "i_minus: value is not finite (at x=2, y=3");
+                 "plane 1 (z = -0.01 m): value is not finite (at x=2, y=3");
     assert_fails(solve(&p, phase, good, bad, good), PTIE_ENUMERIC,
-                 "i_zero: value is not finite (at x=2, y=3");
+                 "plane 1 (z = 0 m): value is not finite (at x=2, y=3");
     bad[3 * W + 2] = 0;
     assert_fails(
         solve(&p, phase, good, bad, good), PTIE_ENUMERIC,
-        "i_zero: intensity to divide by is not positive (at x=2, y=3; expected > 0, found 0");
+        "plane 1 (in focus or reference): intensity to divide by is not positive (at x=2, y=3; expected > 0, "
+        "found 0");
     for (int i = 0; i < W * H; i++) bad[i] = -1;
     assert_fails(solve(&p, phase, good, NULL, bad), PTIE_ENUMERIC,
-                 "i_plus, i_minus: mean intensity is not positive (expected > 0, found 0)");
+                 "planes: mean intensity is not positive (expected > 0, found 0)");
     for (int i = 0; i < W * H; i++) assert_true(phase[i] == 77); /* untouched */
 }
 
-static void distances_must_fit_the_planes(void **state) {
+static void planes_must_lie_apart(void **state) {
     (void)state;
-    float image[16], phase[16];
-    for (int i = 0; i < 16; i++) image[i] = 1;
-    ptie_solver_params p = solver_params(PTIE_PERIODIC, 4, 4);
-    p.defocus_plus_m = 0, p.defocus_minus_m = 1e-3;
-    assert_fails(solve(&p, phase, image, NULL, image), PTIE_EINVAL,
-                 "expected defocus_minus_m < defocus_plus_m, found 0.001 and 0");
-    assert_fails(solve(&p, phase, image, image, NULL), PTIE_EINVAL,
-                 "expected defocus_plus_m other than 0, found 0");
-    p.defocus_plus_m = 2e-3;
-    assert_fails(solve(&p, phase, image, image, image), PTIE_EINVAL,
-                 "expected defocus_minus_m < 0 < defocus_plus_m, found 0.001 and 0.002");
-    assert_ok(solve(&p, phase, image, NULL, image)); /* both planes on one side: a fine pair */
+    ptie_solver *solver;
+    ptie_solver_params p =
+        with_planes(solver_params(PTIE_PERIODIC, 4, 4), 3, (const double[]){1e-3, 0, 1e-3});
+    assert_fails(ptie_tie_plan(&solver, &p), PTIE_EINVAL,
+                 "planes 0 and 2 lie at the same place (expected z apart by at least 1e-09 m, found 0.001 "
+                 "and 0.001)");
+    assert_null(solver);
+    p.z_m[2] = 2e-3; /* all on one side of the focus: fine */
+    assert_ok(ptie_tie_plan(&solver, &p));
+    ptie_solver_free(solver);
+}
+
+/* I(z) a polynomial of the fitted degree, planes in any order: its slope at 0 comes back exactly. */
+static void polynomials_are_exact_for_any_set_of_planes(void **state) {
+    (void)state;
+    enum { W = 6, H = 5, PIXELS = W * H };
+    static const double z[PTIE_MAX_PLANES] = {4e-3, 0, -10e-3, 7e-3, -3e-3, 12e-3, -6e-3, 1e-3};
+    for (int32_t count = 2; count <= PTIE_MAX_PLANES; count++)
+        for (int32_t order = 1; order < count; order++) {
+            float images[PTIE_MAX_PLANES][PIXELS], derivative[PIXELS];
+            const float *planes[PTIE_MAX_PLANES];
+            for (int32_t p = 0; p < count; p++) {
+                planes[p] = images[p];
+                for (int32_t i = 0; i < PIXELS; i++) {
+                    double sum = 0; /* of c_n (z / 10 mm)^n, relative to c_0 = 5 */
+                    for (int32_t n = order; n > 0; n--)
+                        sum = (sum + sin(0.9 * i + n)) * z[p] / 10e-3;
+                    images[p][i] = (float)(5 * (1 + 0.1 * sum));
+                }
+            }
+            ptie_solver_params params = with_planes(solver_params(PTIE_MIRROR, W, H), count, z);
+            params.polynomial_order = order;
+            ptie_tie_weights weights;
+            assert_ok(ptie_tie_weigh(&weights, &params));
+            assert_ok(ptie_tie_derivative(derivative, &weights, planes, W, H));
+            double size = 0; /* sum of |w|: rounding of the images, 6e-8 of 5 each, divided by 5 */
+            for (int32_t p = 0; p < count; p++) size += fabs(weights.weight[p]);
+            for (int32_t i = 0; i < PIXELS; i++)
+                assert_near((double)derivative[i], 0.1 * sin(0.9 * i + 1) / 10e-3,
+                            1e-7 * size + 1e-6 * 0.1 / 10e-3);
+        }
+}
+
+/* Five planes, parabola: the least-squares slope has the smallest noise of all, sum z_i I_i / sum z_i^2. */
+static void many_planes_are_fitted_by_least_squares(void **state) {
+    (void)state;
+    const ptie_solver_params p = with_planes(solver_params(PTIE_MIRROR, 4, 4), 5,
+                                             (const double[]){-2e-3, -1e-3, 0, 1e-3, 2e-3});
+    ptie_tie_weights w;
+    assert_ok(ptie_tie_weigh(&w, &p));
+    assert_true(w.pixelwise && w.base == 2);
+    for (int32_t i = 0; i < 5; i++) assert_near(w.weight[i], p.z_m[i] / 10e-6, 1e-9);
 }
 
 int main(void) {
@@ -270,7 +313,9 @@ int main(void) {
         cmocka_unit_test(the_result_may_replace_an_input),
         cmocka_unit_test(diffraction_biases_as_the_validity_bound_says),
         cmocka_unit_test(bad_images_are_named_with_their_pixel),
-        cmocka_unit_test(distances_must_fit_the_planes),
+        cmocka_unit_test(planes_must_lie_apart),
+        cmocka_unit_test(polynomials_are_exact_for_any_set_of_planes),
+        cmocka_unit_test(many_planes_are_fitted_by_least_squares),
     };
     return cmocka_run_group_tests_name("solver", tests, NULL, NULL);
 }

@@ -20,7 +20,7 @@ static void solve_with(float *phase, ptie_boundary boundary, double wavelength, 
     float plus[PIXELS], minus[PIXELS];
     ptie_solver_params p = solver_params(boundary, W, H);
     p.wavelength_m *= wavelength, p.pixel_m *= pixel;
-    p.defocus_plus_m *= step, p.defocus_minus_m *= step;
+    p.z_m[0] *= step, p.z_m[1] *= step;
     set_planes(plus, minus);
     assert_ok(solve(&p, phase, plus, NULL, minus));
 }
