@@ -5,7 +5,6 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -69,23 +68,33 @@ static bool is_named(int descriptor, const char *path) {
            x.st_ino == y.st_ino;
 }
 
-/* Creates `part`, or takes over what a crash left, as the only writer.  The lock goes with the process, and
-   file systems without locks do without. */
-static ptie_status lock_part(ptie_output_file *file) {
+/* Of the open file, not of the process, and of another kind than HDF5's own (flock), so that other programs may
+   look at what is being written.  It goes with the process; file systems without locks do without. */
+static bool taken(int descriptor) {
+    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    return fcntl(descriptor, F_OFD_SETLK, &whole) != 0 && (errno == EAGAIN || errno == EACCES);
+}
+
+/* Opens `part` as the only writer. */
+static ptie_status lock_part(ptie_output_file *file, int create) {
     for (;;) {
-        file->lock = open(file->part, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-        if (file->lock < 0) return system_failure(file->path, "cannot create");
-        if (flock(file->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        file->lock = open(file->part, O_RDWR | O_CLOEXEC | create, 0666);
+        if (file->lock < 0)
+            return create ? system_failure(file->path, "cannot create") : system_failure(file->part, "cannot open");
+        if (taken(file->lock))
             return PTIE_FAIL(PTIE_EIO, "%s: is being written by someone else (expected %s to be free)", file->path,
                              file->part);
-        if (is_named(file->lock, file->part)) break;
+        if (is_named(file->lock, file->part)) return PTIE_OK;
         ptie_output_unlock(file); /* meanwhile the writer before renamed or removed it */
     }
+}
+
+static ptie_status empty_part(const ptie_output_file *file) {
     if (ftruncate(file->lock, 0) == 0 || errno == EINVAL /* a link to a device */) return PTIE_OK;
     return system_failure(file->path, "cannot create");
 }
 
-ptie_status ptie_output_open(ptie_output_file *file, const char *path, bool overwrite) {
+static ptie_status name_and_lock(ptie_output_file *file, const char *path, bool overwrite, int create) {
     *file = (ptie_output_file){0};
     PTIE_TRY(may_write(path, overwrite));
     size_t bytes = strlen(path) + sizeof ".part";
@@ -97,9 +106,24 @@ ptie_status ptie_output_open(ptie_output_file *file, const char *path, bool over
         return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
     }
     snprintf(file->part, bytes, "%s.part", path);
-    ptie_status status = lock_part(file);
+    ptie_status status = lock_part(file, create);
     if (status != PTIE_OK) forget(file);
     return status;
+}
+
+ptie_status ptie_output_open(ptie_output_file *file, const char *path, bool overwrite) {
+    PTIE_TRY(name_and_lock(file, path, overwrite, O_CREAT));
+    ptie_status status = empty_part(file);
+    if (status != PTIE_OK) forget(file);
+    return status;
+}
+
+ptie_status ptie_output_resume(ptie_output_file *file, const char *path, bool overwrite) {
+    return name_and_lock(file, path, overwrite, 0);
+}
+
+void ptie_output_keep(ptie_output_file *file) {
+    forget(file);
 }
 
 static ptie_status sync_to_disk(const char *path) {

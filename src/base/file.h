@@ -16,6 +16,10 @@ typedef struct ptie_output_file {
 /* Checks that `path` may be written (PTIE_EEXIST without overwrite; PTIE_EIO for a directory, a missing folder,
    or while another writer, in this program or another, has it open) and creates an empty `part`. */
 ptie_status ptie_output_open(ptie_output_file *file, const char *path, bool overwrite);
+/* The same with the content of a `part` that an interrupted run kept.  PTIE_EIO when there is none. */
+ptie_status ptie_output_resume(ptie_output_file *file, const char *path, bool overwrite);
+/* Closes and leaves `part` for ptie_output_resume. */
+void ptie_output_keep(ptie_output_file *file);
 /* Syncs `part` to the disk and renames it to `path`.  On failure `part` is removed. */
 ptie_status ptie_output_commit(ptie_output_file *file);
 /* Lets others open the same output and saves a descriptor: for files whose name one that stays locked guards. */

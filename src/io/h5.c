@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "io/endian.h"
 #include "io/h5_driver.h"
 #include "io/input.h"
 
@@ -85,17 +86,28 @@ static hid_t memory_type(ptie_h5_type type) {
     case PTIE_H5_U8: return H5T_NATIVE_UINT8;
     case PTIE_H5_U32: return H5T_NATIVE_UINT32;
     case PTIE_H5_U64: return H5T_NATIVE_UINT64;
+    case PTIE_H5_LINE: break; /* written in place only */
     }
     return H5I_INVALID_HID;
 }
 
+static hid_t line_type(void) {
+    hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, PTIE_H5_LINE_BYTES);
+    H5Tset_strpad(type, H5T_STR_NULLPAD);
+    H5Tset_cset(type, H5T_CSET_UTF8);
+    return type;
+}
+
+/* To be closed. */
 static hid_t stored_type(ptie_h5_type type) {
     switch (type) {
-    case PTIE_H5_F32: return H5T_IEEE_F32LE;
-    case PTIE_H5_F64: return H5T_IEEE_F64LE;
-    case PTIE_H5_U8: return H5T_STD_U8LE;
-    case PTIE_H5_U32: return H5T_STD_U32LE;
-    case PTIE_H5_U64: return H5T_STD_U64LE;
+    case PTIE_H5_F32: return H5Tcopy(H5T_IEEE_F32LE);
+    case PTIE_H5_F64: return H5Tcopy(H5T_IEEE_F64LE);
+    case PTIE_H5_U8: return H5Tcopy(H5T_STD_U8LE);
+    case PTIE_H5_U32: return H5Tcopy(H5T_STD_U32LE);
+    case PTIE_H5_U64: return H5Tcopy(H5T_STD_U64LE);
+    case PTIE_H5_LINE: return line_type();
     }
     return H5I_INVALID_HID;
 }
@@ -210,9 +222,14 @@ ptie_status ptie_h5_dataset(ptie_h5 *h5, const char *path, ptie_h5_type type, in
     SCOPED_ID creation = H5Pcreate(H5P_DATASET_CREATE);
     H5Pset_create_intermediate_group(links, 1);
     H5Pset_obj_track_times(creation, false);
-    if (chunk_rows > 0) H5Pset_chunk(creation, rank, chunk);
-    SCOPED_ID set =
-        H5Dcreate2(h5->file, path, stored_type(type), space, links, creation, H5P_DEFAULT);
+    if (chunk_rows > 0) {
+        H5Pset_chunk(creation, rank, chunk);
+    } else {
+        H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
+        H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
+    }
+    SCOPED_ID stored = stored_type(type);
+    SCOPED_ID set = H5Dcreate2(h5->file, path, stored, space, links, creation, H5P_DEFAULT);
     return written(h5, set >= 0, "create", path);
 }
 
@@ -346,6 +363,34 @@ ptie_status ptie_h5_read(ptie_h5 *h5, const char *path, ptie_h5_type type, uint6
     if (H5Dread(h5->last, memory_type(type), memory_space, file_space, H5P_DEFAULT, data) < 0)
         return h5_failure(h5, PTIE_EFORMAT, "read", path);
     return PTIE_OK;
+}
+
+ptie_status ptie_h5_place(ptie_h5 *h5, const char *path, ptie_place *place) {
+    LOCK_HDF5;
+    int32_t rank;
+    hsize_t dims[4];
+    SCOPED_ID set = H5I_INVALID_HID;
+    PTIE_TRY(open_set(h5, path, &set));
+    PTIE_TRY(set_shape(h5, path, set, &rank, dims));
+    SCOPED_ID type = H5Dget_type(set);
+    const haddr_t offset = H5Dget_offset(set);
+    if (offset == HADDR_UNDEF || !ptie_machine_is_little())
+        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: %s is not in one piece that this machine can write",
+                         h5->path, path);
+    *place = (ptie_place){.offset = offset, .rows = dims[0], .row_bytes = H5Tget_size(type)};
+    for (int32_t d = 1; d < rank; d++) place->row_bytes *= dims[d];
+    return PTIE_OK;
+}
+
+ptie_status ptie_h5_detach(ptie_h5 *h5, ptie_output_file *file) {
+    ptie_status status = close_file(h5);
+    if (status == PTIE_OK) {
+        *file = h5->output;
+        h5->output = (ptie_output_file){0};
+    }
+    ptie_output_discard(&h5->output);
+    h5_free(h5);
+    return status;
 }
 
 /* --- attributes ----------------------------------------------------------------------------------

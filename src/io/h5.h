@@ -6,8 +6,9 @@
 #ifndef PTIE_IO_H5_H
 #define PTIE_IO_H5_H
 
-#include "base/status.h"
+#include "base/file.h"
 #include "base/text.h"
+#include "io/place.h"
 
 typedef struct ptie_h5 ptie_h5;
 
@@ -16,8 +17,11 @@ typedef enum ptie_h5_type {
     PTIE_H5_F64,
     PTIE_H5_U8,
     PTIE_H5_U32,
-    PTIE_H5_U64
+    PTIE_H5_U64,
+    PTIE_H5_LINE /* text of at most PTIE_H5_LINE_BYTES, filled up with NUL */
 } ptie_h5_type;
+
+#define PTIE_H5_LINE_BYTES 240
 
 /* Creates "<path>.part"; ptie_h5_close renames it to `path`.  Bytes depend only on what is written
    (no time stamps). */
@@ -29,7 +33,8 @@ ptie_status ptie_h5_close(ptie_h5 *h5);
 void ptie_h5_discard(ptie_h5 *h5);
 
 /* Creates a data set of the given shape, its parent groups included.  dims[0] == 0: unlimited,
-   grows with ptie_h5_write.  chunk_rows: rows (along dims[0]) per chunk; 0 = contiguous storage. */
+   grows with ptie_h5_write.  chunk_rows: rows (along dims[0]) per chunk; 0 = in one piece, which takes its
+   place in the file at once and reads as zeros until it is written. */
 ptie_status ptie_h5_dataset(ptie_h5 *h5, const char *path, ptie_h5_type type, int32_t rank,
                             const uint64_t *dims, uint64_t chunk_rows);
 /* Shape of a data set; rank 1..4. */
@@ -47,6 +52,12 @@ ptie_status ptie_h5_write(ptie_h5 *h5, const char *path, ptie_h5_type type, uint
                           uint64_t count, const void *data);
 ptie_status ptie_h5_read(ptie_h5 *h5, const char *path, ptie_h5_type type, uint64_t first,
                          uint64_t count, void *data);
+
+/* Where a data set lies that is in one piece (io/place.h). */
+ptie_status ptie_h5_place(ptie_h5 *h5, const char *path, ptie_place *place);
+/* Completes the structure of a created file and leaves HDF5: from here on rows are written in place, to
+   file->lock, so the file is valid at any moment; the caller commits it.  Frees in any case. */
+ptie_status ptie_h5_detach(ptie_h5 *h5, ptie_output_file *file);
 
 /* Attributes of a group or data set ("/" is the root; groups are made as needed). */
 ptie_status ptie_h5_set_text(ptie_h5 *h5, const char *object, const char *name, const char *value);

@@ -68,7 +68,7 @@ static ptie_status make_signal(ptie_h5 *h5, const ptie_nexus_axes *axes,
     const uint64_t dims[3] = {axes->frames, (uint64_t)axes->height_px, (uint64_t)axes->width_px};
     const double pixel_um = 1e6 * axes->pixel_m;
     snprintf(path, sizeof path, PTIE_NEXUS_DATA "/%s", signal->name);
-    PTIE_TRY(ptie_h5_dataset(h5, path, PTIE_H5_F32, 3, dims, 1));
+    PTIE_TRY(ptie_h5_dataset(h5, path, PTIE_H5_F32, 3, dims, !axes->in_place));
     PTIE_TRY(ptie_h5_set_text(h5, path, "units", signal->unit));
     PTIE_TRY(ptie_h5_set_text(h5, path, "long_name",
                               signal->long_name ? signal->long_name : signal->name));

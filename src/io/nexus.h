@@ -25,6 +25,7 @@ typedef struct ptie_nexus_axes {
     int64_t first_frame, frame_step; /* of the recording they come from; step 0 means 1 */
     double frame_rate_hz;            /* > 0: time in s, else the frame's number */
     double pixel_m;                  /* > 0: y and x in m, else in px */
+    bool in_place;                   /* each signal in one piece (io/place.h); frames > 0 */
 } ptie_nexus_axes;
 
 typedef struct ptie_nexus_signal {
@@ -32,7 +33,7 @@ typedef struct ptie_nexus_signal {
     const char *unit;             /* "rad"; "" for none */
 } ptie_nexus_signal;
 
-/* Makes the groups, the axes and `count` >= 1 empty signals, one frame to a chunk.  Frames are then
+/* Makes the groups, the axes and `count` >= 1 empty signals, one frame to a chunk unless they are in place.  Frames are then
    written with ptie_h5_write(h5, PTIE_NEXUS_DATA "/NAME", PTIE_H5_F32, t, n, ...). */
 ptie_status ptie_nexus_begin(ptie_h5 *h5, const ptie_nexus_axes *axes,
                              const ptie_nexus_signal *signals, size_t count);
