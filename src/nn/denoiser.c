@@ -155,6 +155,7 @@ ptie_denoise_scratch ptie_denoise_slice(const ptie_denoiser *denoiser, void *scr
     const size_t pixels = (size_t)denoiser->width * (size_t)denoiser->height;
     ptie_denoise_scratch slices = {.part_bytes = ptie_stream_scratch(denoiser)};
     slices.image = ptie_slice(&slicer, pixels, sizeof(float));
+    slices.rows = ptie_slice(&slicer, 4 * (size_t)denoiser->width, sizeof(double));
     slices.parts = ptie_slice(&slicer, (size_t)denoiser->parts, slices.part_bytes);
     slices.bytes = slicer.used;
     return slices;

@@ -39,6 +39,7 @@ struct ptie_denoiser {
 
 typedef struct ptie_denoise_scratch {
     float *image; /* one frame, for the way from and to rad */
+    double *rows; /* four rows, for the way back to rad */
     unsigned char *parts;
     size_t part_bytes, bytes;
 } ptie_denoise_scratch;
