@@ -159,17 +159,8 @@ static ptie_status train_with_kernels(const char *path, const char *cpu, uint64_
     ptie_ctx_params_init(&c);
     c.cpu = cpu;
     assert_ok(ptie_ctx_create(&ctx, &c));
-    ptie_preset *preset = tiny_preset(TINY_SIDE, "3 % .. 10 %");
-    ptie_model *model = tiny_model();
-    ptie_dataset *dataset;
     const ptie_train_params params = params_with(steps_limit, support_exists(path));
-    assert_ok(ptie_dataset_from_preset(&dataset, preset, 1, TINY_SAMPLES));
-    const ptie_status status = ptie_train(ctx, model, dataset, path, &params, silent);
-    ptie_dataset_free(dataset);
-    ptie_model_free(model);
-    ptie_preset_free(preset);
-    ptie_ctx_free(ctx);
-    return status;
+    return tiny_train_with(ctx, path, &params, silent);
 }
 
 static void kernels_and_generator_are_noted(void **state) {

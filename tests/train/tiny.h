@@ -57,10 +57,10 @@ static inline ptie_train_params tiny_params(void) {
     return params;
 }
 
-/* Trains a fresh tiny model on a tiny preset. */
-static inline ptie_status tiny_train(const char *path, int32_t threads,
-                                     const ptie_train_params *params, ptie_progress progress) {
-    ptie_ctx *ctx = tiny_context(threads);
+/* Trains a fresh tiny model on a tiny preset; frees ctx. */
+static inline ptie_status tiny_train_with(ptie_ctx *ctx, const char *path,
+                                          const ptie_train_params *params,
+                                          ptie_progress progress) {
     ptie_preset *preset = tiny_preset(TINY_SIDE, "3 % .. 10 %");
     ptie_model *model = tiny_model();
     ptie_dataset *dataset;
@@ -71,6 +71,11 @@ static inline ptie_status tiny_train(const char *path, int32_t threads,
     ptie_preset_free(preset);
     ptie_ctx_free(ctx);
     return status;
+}
+
+static inline ptie_status tiny_train(const char *path, int32_t threads,
+                                     const ptie_train_params *params, ptie_progress progress) {
+    return tiny_train_with(tiny_context(threads), path, params, progress);
 }
 
 #endif
