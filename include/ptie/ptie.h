@@ -21,6 +21,7 @@
 #define PTIE_PTIE_H
 
 #include <ptie/bench.h>
+#include <ptie/camera.h>
 #include <ptie/context.h>
 #include <ptie/dataset.h>
 #include <ptie/figure.h>

@@ -19,7 +19,10 @@ enum {
     PTIE_STREAM_NOISE_ZERO = 6,
     PTIE_STREAM_WEIGHTS = 7, /* initial weights */
     PTIE_STREAM_ORDER = 8,   /* order of samples in an epoch */
-    PTIE_STREAM_DROPOUT = 9
+    PTIE_STREAM_DROPOUT = 9,
+    PTIE_STREAM_SENSOR = 10,  /* shot and read noise of a camera */
+    PTIE_STREAM_FLICKER = 11, /* power of its light */
+    PTIE_STREAM_PATTERN = 12  /* its fringes, dust and unequal pixels */
 };
 
 typedef struct ptie_random {
