@@ -149,20 +149,28 @@ static void add_path(facts *f, const char *name, const char *path) {
     if (path[0]) add_text(f, name, "%s", path);
 }
 
+static void describe_planes(facts *f, const ptie_rig *rig) {
+    static const char *const names[PTIE_ROLES] = {"plus", "minus", "zero", "plus2", "minus2"};
+    for (int i = 0; i < PTIE_ROLES; i++) {
+        const ptie_plane *plane = &rig->plane[i];
+        char defocus[PTIE_QUANTITY_BYTES];
+        if (!plane->used) continue;
+        ptie_print_quantity(defocus, plane->defocus_m, PTIE_LENGTH);
+        add_text(f, names[i], "%s%s%s", defocus, plane->source[0] ? ", " : "", plane->source);
+    }
+}
+
 static void describe_rig(facts *f, const ptie_rig *rig) {
-    static const char *const planes[] = {"pair", "triple", "reference"};
+    static const char *const layouts[] = {"separate", "mosaic", "side-by-side", "top-bottom", "quadrants"};
     static const char *const polarities[] = {"negative", "auto", "positive"};
     add_text(f, "kind", "rig");
     add_quantity(f, "wavelength", rig->wavelength_m, PTIE_LENGTH);
     add_quantity(f, "pixel", rig->pixel_m, PTIE_LENGTH);
-    add_quantity(f, "defocus plus", rig->defocus_plus_m, PTIE_LENGTH);
-    if (rig->planes != PTIE_PLANES_REFERENCE)
-        add_quantity(f, "defocus minus", rig->defocus_minus_m, PTIE_LENGTH);
-    add_text(f, "planes", "%s", planes[rig->planes]);
-    add_path(f, "plus", rig->plus);
-    add_path(f, "zero", rig->zero);
-    add_path(f, "minus", rig->minus);
+    add_text(f, "layout", "%s", layouts[rig->layout]);
+    describe_planes(f, rig);
     add_path(f, "reference", rig->reference);
+    add_path(f, "dark", rig->dark);
+    add_path(f, "mask", rig->mask);
     add_text(f, "polarity", "%s", polarities[rig->polarity + 1]);
     add_number(f, "binning", rig->binning, "%d", rig->binning);
     add_text(f, "boundary", "%s", rig->boundary == PTIE_PERIODIC ? "periodic" : "mirror");

@@ -41,12 +41,13 @@ static ptie_status add_map(maps *m, const char *path, int64_t frame, ptie_panel 
 /* The data set that the rig names is one of an HDF5 file. */
 static void path_of_plus(char path[PATH_BYTES], const ptie_run_params *run) {
     ptie_recording *recording;
-    const char *inside = strstr(run->plus, ":/") ? "" : run->rig->plus;
-    if (inside[0] && ptie_recording_open(&recording, run->plus) == PTIE_OK) {
+    const char *file = run->recording ? run->recording : run->plane[PTIE_PLUS];
+    const char *inside = strstr(file, ":/") ? "" : run->rig->plane[PTIE_PLUS].source;
+    if (inside[0] && ptie_recording_open(&recording, file) == PTIE_OK) {
         if (strcmp(ptie_recording_get_info(recording)->format, "HDF5") != 0) inside = "";
         ptie_recording_close(recording);
     }
-    snprintf(path, PATH_BYTES, "%s%s%s", run->plus, inside[0] ? ":" : "", inside);
+    snprintf(path, PATH_BYTES, "%s%s%s", file, inside[0] ? ":" : "", inside);
 }
 
 int check_maps_frame(const ptie_run_params *run, int64_t frame) {

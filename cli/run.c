@@ -25,7 +25,7 @@ static const char reconstruct_examples[] =
 
 static const char notes[] =
     "RECORDING holds all planes (HDF5; the rig names the data sets), or the flow\n"
-    "where the rig's layout is a reference. Files: HDF5 (FILE.h5 or\n"
+    "where the rig's set is a reference. Files: HDF5 (FILE.h5 or\n"
     "FILE.h5:/path/inside), TIFF, NPY, PNG, a folder of numbered images, or a\n"
     "pattern with one %d.\n\n"
     "The table has mean and standard deviation over frames: MGM, mean gradient in\n"
@@ -46,7 +46,8 @@ typedef struct settings {
 
 static int check(settings *s, const char *name, bool with_model) {
     ptie_run_params *p = &s->params;
-    if (!p->plus) return misused("%s: missing RECORDING (see 'ptie help %s')", name, name);
+    if (!p->recording && !p->plane[PTIE_PLUS])
+        return misused("%s: missing RECORDING (see 'ptie help %s')", name, name);
     if (!s->rig_path) return misused("%s: missing rig (expected --rig FILE.ini)", name);
     if (with_model && !s->model_path)
         return misused("%s: missing model (expected --model FILE.safetensors)", name);
@@ -70,12 +71,16 @@ static int parse(settings *s, const char *name, bool with_model, int argc, char 
         {0, "fast", OPTION_FLAG, &p->fast, .help = "half precision where available; less exact"},
         {'r', "rig", OPTION_TEXT, &s->rig_path, "FILE", .help = "how the set-up is built (.ini)"},
         {'o', "output", OPTION_TEXT, &p->output, "FILE", .help = "result to write (.h5)"},
-        {0, "plus", OPTION_TEXT, &p->plus, "FILE",
+        {0, "plus", OPTION_TEXT, &p->plane[PTIE_PLUS], "FILE",
          .help = "planes in files of their own: beyond focus"},
-        {0, "zero", OPTION_TEXT, &p->zero, "FILE", .help = "in focus"},
-        {0, "minus", OPTION_TEXT, &p->minus, "FILE", .help = "before focus"},
+        {0, "minus", OPTION_TEXT, &p->plane[PTIE_MINUS], "FILE", .help = "before focus"},
+        {0, "zero", OPTION_TEXT, &p->plane[PTIE_ZERO], "FILE", .help = "in focus"},
+        {0, "plus2", OPTION_TEXT, &p->plane[PTIE_PLUS2], "FILE", .help = "farther beyond focus"},
+        {0, "minus2", OPTION_TEXT, &p->plane[PTIE_MINUS2], "FILE", .help = "farther before focus"},
         {0, "reference", OPTION_TEXT, &p->reference, "FILE",
          .help = "no-flow recording, instead of the rig's"},
+        {0, "dark", OPTION_TEXT, &p->dark, "FILE", .help = "recording without light, instead of the rig's"},
+        {0, "mask", OPTION_TEXT, &p->mask, "FILE", .help = "image of what is opaque (0), instead of the rig's"},
         {0, "first", OPTION_INT64, &p->first, "N", .high = INT64_MAX, .help = "first frame"},
         {'n', "count", OPTION_INT64, &p->count, "N", .high = INT64_MAX,
          .help = "frames; 0 = to the end"},
@@ -115,10 +120,10 @@ static int parse(settings *s, const char *name, bool with_model, int argc, char 
     operand_list files;
     int code = parse_options(&usage, argc, argv, &files);
     if (code != GO_ON) return code;
-    if (files.count && p->plus)
+    if (files.count && p->plane[PTIE_PLUS])
         return misused("%s: expected RECORDING or --plus, not both (found '%s')", name,
                        files.value[0]);
-    if (files.count) p->plus = files.value[0];
+    if (files.count) p->recording = files.value[0];
     return check(s, name, with_model);
 }
 

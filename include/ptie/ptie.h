@@ -31,6 +31,7 @@
 #include <ptie/model.h>
 #include <ptie/optics.h>
 #include <ptie/recording.h>
+#include <ptie/rig.h>
 #include <ptie/run.h>
 #include <ptie/simulate.h>
 #include <ptie/solver.h>

@@ -1,51 +1,20 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The rig (how the set-up is built) and the pipeline: recording -> phase -> denoised phase -> metrics.
- * docs/formats.md has the rig's keys; docs/math.md the equations.
- */
+/* The pipeline: recording -> phase -> denoised phase -> metrics.  docs/math.md has the equations. */
 #ifndef PTIE_RUN_H
 #define PTIE_RUN_H
 
 #include <ptie/metrics.h>
 #include <ptie/model.h>
 #include <ptie/recording.h>
-#include <ptie/solver.h>
-
-/* Which planes a frame brings. */
-typedef enum ptie_planes {
-    PTIE_PLANES_PAIR = 0,     /* I+ and I- */
-    PTIE_PLANES_TRIPLE = 1,   /* I+, I0 and I-, steps may differ */
-    PTIE_PLANES_REFERENCE = 2 /* one defocused plane, and a no-flow reference of the same plane */
-} ptie_planes;
-
-typedef struct ptie_rig {
-    uint32_t struct_size;    /* set by ptie_rig_init */
-    double wavelength_m;     /* default 532e-9 */
-    double pixel_m;          /* at the object: sensor pitch / magnification */
-    double defocus_plus_m, defocus_minus_m; /* default +10e-3, -10e-3 */
-    ptie_planes planes;
-    char plus[512], zero[512], minus[512]; /* data sets inside an HDF5 recording ("/entry/data/plus"), or "" */
-    char reference[512];     /* no-flow recording, relative to the rig file; its frames are averaged */
-    int32_t polarity;        /* sign of the flow's phase: +1, -1 (hot gas), 0 = judge each frame */
-    int32_t binning;         /* average n x n pixels before solving, default 1 */
-    ptie_boundary boundary;  /* default PTIE_MIRROR */
-    double cutoff_m;         /* Tikhonov cut-off period of the solver, 0 = off */
-    double frame_rate_hz;    /* 0: as the recording says */
-    bool zero_border;        /* pin the mean: median of the frame's border = 0, default true */
-} ptie_rig;
-
-PTIE_API void ptie_rig_init(ptie_rig *rig);
-
-/* Reads an INI file.  Errors: PTIE_EIO, PTIE_ENAME (unknown section or key, with the nearest valid one),
-   PTIE_EFORMAT (line, value, expected unit), PTIE_EINVAL (missing wavelength, pixel or defocus). */
-PTIE_API PTIE_NODISCARD ptie_status ptie_rig_load(ptie_rig *rig, const char *path);
+#include <ptie/rig.h>
 
 typedef struct ptie_run_params {
     uint32_t struct_size;      /* set by ptie_run_params_init */
     const ptie_rig *rig;
-    /* Recordings.  PTIE_PLANES_REFERENCE: `plus` is the flow.  A pair or triple in one HDF5 file: give it
-       as `plus` and leave the others NULL (the rig names the data sets). */
-    const char *plus, *zero, *minus;
-    const char *reference;     /* overrides rig->reference; NULL: as the rig says */
+    const char *recording;     /* all planes of a frame: an HDF5 file whose data sets the rig names, or sensor
+                                  images with all planes, or the flow of a rig with one plane */
+    const char *plane[PTIE_ROLES]; /* or planes in recordings of their own; NULL: in `recording` */
+    const char *reference, *dark, *mask; /* override the rig's; NULL: as the rig says */
     const ptie_model *model;   /* NULL: reconstruct only */
     const char *truth;         /* recording of the true phase for RMSE and correlation, or NULL */
     const char *output;        /* .h5: phase, denoised, metrics, provenance; required */

@@ -115,6 +115,10 @@ static ptie_status set_field(reading *r, const ptie_ini_key *key, const char *te
         if (strlen(text) >= key->text_bytes) return complain(r, key, "a shorter text", text);
         memcpy(field, text, strlen(text) + 1);
         return PTIE_OK;
+    case PTIE_INI_OWN: {
+        const char *wrong = key->type->parse(field, text);
+        return wrong ? complain(r, key, wrong, text) : PTIE_OK;
+    }
     }
     return PTIE_EFORMAT;
 }
@@ -219,11 +223,13 @@ ptie_status ptie_ini_read(void *target, const ptie_ini_key *keys, size_t count, 
     return PTIE_OK;
 }
 
+/* Appends nothing when the field is not set. */
 static void print_field(ptie_text *out, const ptie_ini_key *key, const void *field) {
-    char low[48], high[48];
+    char low[PTIE_QUANTITY_BYTES], high[PTIE_QUANTITY_BYTES];
     switch (key->kind) {
-    case PTIE_INI_QUANTITY: 
-        ptie_text_append(out, "%s", ptie_print_quantity(low, *(const double *)field, key->quantity));
+    case PTIE_INI_QUANTITY:
+        if (!isnan(*(const double *)field))
+            ptie_text_append(out, "%s", ptie_print_quantity(low, *(const double *)field, key->quantity));
         break;
     case PTIE_INI_RANGE: {
         const ptie_range *range = field;
@@ -235,19 +241,22 @@ static void print_field(ptie_text *out, const ptie_ini_key *key, const void *fie
     case PTIE_INI_BOOLEAN: ptie_text_append(out, "%s", *(const bool *)field ? "yes" : "no"); break;
     case PTIE_INI_CHOICE: ptie_text_append(out, "%s", key->choices[*(const int *)field]); break;
     case PTIE_INI_TEXT: ptie_text_append(out, "%s", (const char *)field); break;
+    case PTIE_INI_OWN: key->type->print(out, field); break;
     }
 }
 
 void ptie_ini_print(ptie_text *out, const void *target, const ptie_ini_key *keys, size_t count) {
     const char *section = "";
     for (size_t i = 0; i < count; i++) {
-        if (strcmp(section, keys[i].section) != 0)
-            ptie_text_append(out, "%s[%s]\n", i ? "\n" : "", keys[i].section);
-        section = keys[i].section;
-        const void *field = (const char *)target + keys[i].offset;
-        if (keys[i].kind == PTIE_INI_QUANTITY && isnan(*(const double *)field)) continue;
-        ptie_text_append(out, "%s = ", keys[i].name);
-        print_field(out, &keys[i], field);
-        ptie_text_append(out, "\n");
+        ptie_text value = {0};
+        print_field(&value, &keys[i], (const char *)target + keys[i].offset);
+        out->failed |= value.failed;
+        if (value.length > 0) {
+            if (strcmp(section, keys[i].section) != 0)
+                ptie_text_append(out, "%s[%s]\n", *section ? "\n" : "", keys[i].section);
+            section = keys[i].section;
+            ptie_text_append(out, "%s = %s\n", keys[i].name, value.data);
+        }
+        ptie_text_free(&value);
     }
 }

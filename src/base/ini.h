@@ -16,8 +16,15 @@ typedef enum ptie_ini_kind {
     PTIE_INI_INTEGER,  /* int32_t */
     PTIE_INI_BOOLEAN,  /* bool: yes no true false on off */
     PTIE_INI_CHOICE,   /* an enum (int): index into choices */
-    PTIE_INI_TEXT      /* char[text_bytes] */
+    PTIE_INI_TEXT,     /* char[text_bytes] */
+    PTIE_INI_OWN       /* as `type` says */
 } ptie_ini_kind;
+
+/* A kind of value that only one table has. */
+typedef struct ptie_ini_type {
+    const char *(*parse)(void *field, const char *text); /* NULL, or what was expected */
+    void (*print)(ptie_text *out, const void *field);
+} ptie_ini_type;
 
 typedef struct ptie_range {
     double low, high;
@@ -31,6 +38,7 @@ typedef struct ptie_ini_key {
     double low, high;        /* allowed values, both included; QUANTITY, RANGE, INTEGER */
     const char *const *choices; /* CHOICE: NULL-terminated */
     size_t text_bytes;       /* TEXT: size of the field */
+    const ptie_ini_type *type; /* OWN */
     bool required;
 } ptie_ini_key;
 
@@ -41,8 +49,8 @@ typedef struct ptie_ini_key {
 ptie_status ptie_ini_read(void *target, const ptie_ini_key *keys, size_t count, const char *text,
                           const char *where);
 
-/* Appends the target as INI text that ptie_ini_read reads back to the same values.  A quantity that is NaN is
-   not set, and left out. */
+/* Appends the target as INI text that ptie_ini_read reads back to the same values.  What is not set, a quantity
+   that is NaN or an empty text, is left out, and so is a section without keys. */
 void ptie_ini_print(ptie_text *out, const void *target, const ptie_ini_key *keys, size_t count);
 
 #endif

@@ -27,9 +27,8 @@ typedef struct pipeline {
 static ptie_status solve_and_denoise(void *context, int32_t worker) {
     const pipeline *p = context;
     const ptie_frames *f = &p->frames;
-    return ptie_frame_solve(p->plan, worker, ptie_frame_scratch(f, worker),
-                            ptie_frame(f, f->c, worker), ptie_frame(f, f->a, worker), NULL,
-                            ptie_frame(f, f->b, worker));
+    const float *const planes[] = {ptie_frame(f, f->a, worker), ptie_frame(f, f->b, worker)};
+    return ptie_frame_solve(p->plan, worker, ptie_frame_scratch(f, worker), ptie_frame(f, f->c, worker), planes);
 }
 
 static ptie_status run(void *context, int32_t worker) {
@@ -40,7 +39,7 @@ static ptie_status run(void *context, int32_t worker) {
     ptie_run_summary summary;
     ptie_run_params_init(&params);
     params.rig = &p->rig;
-    params.plus = ptie_folder_file(&p->folder, recording, "jet.h5");
+    params.recording = ptie_folder_file(&p->folder, recording, "jet.h5");
     params.model = p->model;
     params.output = ptie_folder_file(&p->folder, output, "phase.h5");
     params.overwrite = true;

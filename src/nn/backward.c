@@ -9,7 +9,7 @@
 /* Gradient of z of the band's layer (N3), with a row above and below. */
 static ptie_map z_gradient(const ptie_stepper *stepper, const ptie_band *band) {
     const int32_t k = band->layer;
-    ptie_map padded = ptie_layout_map(&stepper->z_grad, band->workspace->z_grad, k);
+    ptie_map padded = ptie_nn_layout_map(&stepper->z_grad, band->workspace->z_grad, k);
     padded.height = band->rows + 2;
     const ptie_clip inside = ptie_clip_band(&padded, band->first, stepper->z.maps[k].height);
     const int32_t first = inside.first, rows = inside.map.height;
@@ -57,7 +57,7 @@ static void unconvolve(const ptie_stepper *stepper, const ptie_band *band, const
 
 static ptie_map unconvolve_aside(const ptie_stepper *stepper, const ptie_band *band,
                                  const ptie_map *z_grad) {
-    ptie_map in_grad = ptie_layout_map(&stepper->in_grad, band->workspace->in_grad, band->layer);
+    ptie_map in_grad = ptie_nn_layout_map(&stepper->in_grad, band->workspace->in_grad, band->layer);
     in_grad.height = band->rows;
     unconvolve(stepper, band, &in_grad, z_grad);
     return in_grad;
@@ -124,7 +124,7 @@ static void drop_gradient(const ptie_map *grad, const ptie_map *dropped, float k
 static void finish_join(const ptie_stepper *stepper, const ptie_band *band) {
     const int32_t before = band->layer - 1, height = stepper->z.maps[before].height;
     const ptie_map grad = ptie_gradient_rows(stepper, band->sample, before, 0, height);
-    const ptie_map coarse = ptie_layout_map(&stepper->coarse, band->sample->coarse, band->layer);
+    const ptie_map coarse = ptie_nn_layout_map(&stepper->coarse, band->sample->coarse, band->layer);
     const double rate = stepper->model->params.dropout;
     if (stepper->model->graph.layers[band->layer].dropout && rate > 0)
         drop_gradient(&grad, &coarse, (float)(1 / (1 - rate)));

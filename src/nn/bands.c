@@ -25,12 +25,12 @@ void ptie_band_next(const ptie_stepper *stepper, ptie_band *band) {
 
 ptie_map ptie_z_rows(const ptie_stepper *stepper, const ptie_sample_state *sample, int32_t layer,
                      int32_t first, int32_t rows) {
-    return ptie_map_rows(ptie_layout_map(&stepper->z, sample->z, layer), first, rows);
+    return ptie_map_rows(ptie_nn_layout_map(&stepper->z, sample->z, layer), first, rows);
 }
 
 ptie_map ptie_gradient_rows(const ptie_stepper *stepper, const ptie_sample_state *sample,
                             int32_t layer, int32_t first, int32_t rows) {
-    return ptie_map_rows(ptie_layout_map(&stepper->gradients, sample->gradients, layer), first,
+    return ptie_map_rows(ptie_nn_layout_map(&stepper->gradients, sample->gradients, layer), first,
                          rows);
 }
 
@@ -66,7 +66,7 @@ static void load_image(const ptie_stepper *stepper, const ptie_band *band, const
 
 static ptie_map finer_rows(const ptie_stepper *stepper, const ptie_band *band, int32_t first,
                            int32_t rows) {
-    const ptie_map whole = ptie_layout_map(&stepper->finer, band->workspace->finer, band->layer);
+    const ptie_map whole = ptie_nn_layout_map(&stepper->finer, band->workspace->finer, band->layer);
     return ptie_map_rows(whole, 2 * (first - band->first + 1), 2 * rows);
 }
 
@@ -82,7 +82,7 @@ static void pool(const ptie_stepper *stepper, const ptie_band *band, const ptie_
 
 static void join(const ptie_stepper *stepper, const ptie_band *band, const ptie_clip *to) {
     const int32_t skip = stepper->model->graph.layers[band->layer].skip;
-    const ptie_map coarse = ptie_layout_map(&stepper->coarse, band->sample->coarse, band->layer);
+    const ptie_map coarse = ptie_nn_layout_map(&stepper->coarse, band->sample->coarse, band->layer);
     const ptie_map up = ptie_map_channels(to->map, 0, coarse.channels);
     const ptie_map rest =
         ptie_map_channels(to->map, coarse.channels, to->map.channels - coarse.channels);
@@ -91,7 +91,7 @@ static void join(const ptie_stepper *stepper, const ptie_band *band, const ptie_
 }
 
 ptie_map ptie_band_input(const ptie_stepper *stepper, const ptie_band *band) {
-    ptie_map padded = ptie_layout_map(&stepper->input, band->workspace->input, band->layer);
+    ptie_map padded = ptie_nn_layout_map(&stepper->input, band->workspace->input, band->layer);
     padded.height = band->rows + 2;
     const ptie_clip inside =
         ptie_clip_band(&padded, band->first, stepper->z.maps[band->layer].height);

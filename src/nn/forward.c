@@ -34,7 +34,7 @@ void ptie_dropout(const ptie_stepper *stepper, const ptie_map *map, size_t sampl
 /* What a join upsamples. */
 static void prepare_join(const ptie_stepper *stepper, int32_t k, size_t index) {
     const ptie_sample_state *sample = &stepper->samples[index];
-    const ptie_map coarse = ptie_layout_map(&stepper->coarse, sample->coarse, k);
+    const ptie_map coarse = ptie_nn_layout_map(&stepper->coarse, sample->coarse, k);
     const ptie_map z = ptie_z_rows(stepper, sample, k - 1, 0, coarse.height);
     stepper->engine->kernels->normalise(&coarse, &z, stepper->norms[k - 1]);
     if (stepper->model->graph.layers[k].dropout) ptie_dropout(stepper, &coarse, index);

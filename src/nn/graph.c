@@ -91,7 +91,7 @@ const ptie_param *ptie_graph_find(const ptie_graph *graph, const char *name) {
     return NULL;
 }
 
-void ptie_layout_add(ptie_layout *layout, int32_t which, int32_t channels, int32_t height,
+void ptie_nn_layout_add(ptie_nn_layout *layout, int32_t which, int32_t channels, int32_t height,
                      int32_t width) {
     const size_t line = 16; /* floats in 64 bytes */
     const ptie_map map = ptie_map_make(channels, height, width);
@@ -100,6 +100,6 @@ void ptie_layout_add(ptie_layout *layout, int32_t which, int32_t channels, int32
     if (channels > 0) layout->floats += (ptie_map_floats(&map) + line - 1) / line * line;
 }
 
-ptie_map ptie_layout_map(const ptie_layout *layout, float *block, int32_t which) {
+ptie_map ptie_nn_layout_map(const ptie_nn_layout *layout, float *block, int32_t which) {
     return ptie_map_in(layout->maps[which], block + layout->offsets[which]);
 }

@@ -65,15 +65,15 @@ void ptie_graph_build(ptie_graph *graph, const ptie_model_params *params);
 const ptie_param *ptie_graph_find(const ptie_graph *graph, const char *name);
 
 /* Places of maps, one per layer, in a block of floats. */
-typedef struct ptie_layout {
+typedef struct ptie_nn_layout {
     ptie_map maps[PTIE_MAX_LAYERS]; /* without data */
     size_t offsets[PTIE_MAX_LAYERS];
     size_t floats;
-} ptie_layout;
+} ptie_nn_layout;
 
 /* Gives layer `which` a map; without channels it takes no room. */
-void ptie_layout_add(ptie_layout *layout, int32_t which, int32_t channels, int32_t height,
+void ptie_nn_layout_add(ptie_nn_layout *layout, int32_t which, int32_t channels, int32_t height,
                      int32_t width);
-ptie_map ptie_layout_map(const ptie_layout *layout, float *block, int32_t which);
+ptie_map ptie_nn_layout_map(const ptie_nn_layout *layout, float *block, int32_t which);
 
 #endif

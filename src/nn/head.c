@@ -17,7 +17,7 @@ static ptie_map image_rows(const ptie_stepper *stepper, float *image, int32_t fi
 static ptie_map activate(const ptie_stepper *stepper, const ptie_band *band) {
     const ptie_map z = ptie_z_rows(stepper, band->sample, band->layer, band->first, band->rows);
     const ptie_map out = ptie_map_rows(
-        ptie_layout_map(&stepper->input, band->workspace->input, band->layer), 0, band->rows);
+        ptie_nn_layout_map(&stepper->input, band->workspace->input, band->layer), 0, band->rows);
     stepper->engine->kernels->normalise(&out, &z, stepper->norms[band->layer]);
     return out;
 }
@@ -60,7 +60,7 @@ static void run_back(const ptie_stepper *stepper, ptie_band band) {
         const ptie_map slope = image_rows(stepper, band.sample->slope, band.first, band.rows);
         const ptie_map z = ptie_z_rows(stepper, band.sample, last, band.first, band.rows);
         const ptie_map grad = ptie_map_rows(
-            ptie_layout_map(&stepper->z_grad, band.workspace->z_grad, last), 0, band.rows);
+            ptie_nn_layout_map(&stepper->z_grad, band.workspace->z_grad, last), 0, band.rows);
         kernels->conv1x1_weights(grads, grads + channels, &slope, &in);
         ptie_head_gradient(stepper, band.sample, &grad, band.first);
         kernels->normalise_sums(sums, &grad, &z, stepper->norms[last]);

@@ -38,14 +38,14 @@ static void lay_out_layer(ptie_stepper *stepper, int32_t k) {
     const int32_t rows = stepper->rows[k] = band_rows(layer, height, width);
     const int32_t last = graph->layer_count - 1;
     const bool join = layer->input == PTIE_INPUT_JOIN, pool = layer->input == PTIE_INPUT_POOL;
-    ptie_layout_add(&stepper->z, k, layer->out_channels, height, width);
-    ptie_layout_add(&stepper->gradients, k, k == last ? 0 : layer->out_channels, height, width);
-    ptie_layout_add(&stepper->coarse, k, join ? graph->layers[k - 1].out_channels : 0, height / 2,
+    ptie_nn_layout_add(&stepper->z, k, layer->out_channels, height, width);
+    ptie_nn_layout_add(&stepper->gradients, k, k == last ? 0 : layer->out_channels, height, width);
+    ptie_nn_layout_add(&stepper->coarse, k, join ? graph->layers[k - 1].out_channels : 0, height / 2,
                     width / 2);
-    ptie_layout_add(&stepper->input, k, layer->in_channels, rows + 2, width);
-    ptie_layout_add(&stepper->z_grad, k, layer->out_channels, rows + 2, width);
-    ptie_layout_add(&stepper->in_grad, k, join || pool ? layer->in_channels : 0, rows, width);
-    ptie_layout_add(&stepper->finer, k, pool ? layer->in_channels : 0, 2 * (rows + 2), 2 * width);
+    ptie_nn_layout_add(&stepper->input, k, layer->in_channels, rows + 2, width);
+    ptie_nn_layout_add(&stepper->z_grad, k, layer->out_channels, rows + 2, width);
+    ptie_nn_layout_add(&stepper->in_grad, k, join || pool ? layer->in_channels : 0, rows, width);
+    ptie_nn_layout_add(&stepper->finer, k, pool ? layer->in_channels : 0, 2 * (rows + 2), 2 * width);
 }
 
 static void slice_layers(ptie_stepper *stepper, ptie_slicer *slicer) {

@@ -36,12 +36,12 @@ struct ptie_stepper {
     ptie_model *model;
     ptie_loss_weights loss;
     int32_t batch, height, width;
-    ptie_layout z;         /* output channels */
-    ptie_layout gradients; /* the same, but the last layer's are made when needed */
-    ptie_layout coarse;    /* what a join reads of the layer before it, before it is upsampled */
+    ptie_nn_layout z;         /* output channels */
+    ptie_nn_layout gradients; /* the same, but the last layer's are made when needed */
+    ptie_nn_layout coarse;    /* what a join reads of the layer before it, before it is upsampled */
     /* Bands: what a layer reads and the gradient of its z, with a row more above and below; the
        gradient of what it reads; what a pool reads. */
-    ptie_layout input, z_grad, in_grad, finer;
+    ptie_nn_layout input, z_grad, in_grad, finer;
     int32_t rows[PTIE_MAX_LAYERS];          /* of a band, without those two */
     float *packed[PTIE_MAX_LAYERS];         /* weights in the kernels' order, forward ... */
     float *packed_adjoint[PTIE_MAX_LAYERS]; /* ... and backward */

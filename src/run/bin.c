@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "run/source.h"
+#include "run/prepare.h"
 
 void ptie_bin(float *out, const float *image, int32_t width, int32_t height, int32_t binning) {
     int32_t columns = width / binning, rows = height / binning;

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "run/rig.h"
+#include "run/run.h"
 
 #define METRICS "/entry/metrics"
 #define PROCESS "/entry/process_1"
@@ -18,7 +19,7 @@ static ptie_status write_process(ptie_h5 *h5, const ptie_run_params *params) {
     PTIE_TRY(ptie_h5_set_text(h5, PROCESS, "NX_class", "NXprocess"));
     PTIE_TRY(ptie_h5_set_text(h5, PROCESS, "program", "ptie"));
     PTIE_TRY(ptie_h5_set_text(h5, PROCESS, "version", PTIE_VERSION_STRING));
-    PTIE_TRY(ptie_h5_set_text(h5, PROCESS, "recording", params->plus));
+    PTIE_TRY(ptie_h5_set_text(h5, PROCESS, "recording", ptie_run_name(params)));
     if (params->provenance) PTIE_TRY(ptie_h5_set_text(h5, PROCESS, "command", params->provenance));
     if (params->model) PTIE_TRY(ptie_h5_set_text(h5, PROCESS, "model", ptie_model_name(params->model)));
     char *rig = ptie_rig_print(params->rig);

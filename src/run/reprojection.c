@@ -61,7 +61,7 @@ ptie_status ptie_reprojection_create(ptie_reprojection **out, const ptie_rig *ri
     r->width = width_px;
     r->height = height_px;
     r->pixels = (size_t)width_px * (size_t)height_px;
-    r->defocus_m = fabs(rig->defocus_plus_m);
+    r->defocus_m = fabs(rig->plane[PTIE_PLUS].defocus_m);
     ptie_status status = build(r, &solver, workers);
     if (status == PTIE_OK)
         *out = r;
@@ -78,12 +78,10 @@ void ptie_reprojection_free(ptie_reprojection *r) {
 }
 
 ptie_status ptie_reprojection_measure(const ptie_reprojection *r, int32_t worker, double *residual,
-                                      const float *const *maps, size_t count, const float *i_plus,
-                                      const float *i_zero, const float *i_minus) {
+                                      const float *const *maps, size_t count,
+                                      const float *const *planes) {
     const work w = carve(r, &(ptie_slicer){.base = r->scratch + (size_t)worker * r->bytes});
     const double scale = 1 / (2 * r->defocus_m);
-    const float *planes[3];
-    ptie_rig_order(planes, i_plus, i_zero, i_minus);
     PTIE_TRY(ptie_tie_derivative(w.measured, &r->weights, planes, r->width, r->height));
     for (size_t n = 0; n < count; n++) {
         PTIE_TRY(ptie_optics_defocus(r->optics, w.plus, w.minus, maps[n], NULL, w.optics));

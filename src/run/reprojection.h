@@ -18,7 +18,6 @@ void ptie_reprojection_free(ptie_reprojection *reprojection); /* NULL is fine */
 /* residual (out): one number per map.  Planes as in ptie_frame_solve. */
 ptie_status ptie_reprojection_measure(const ptie_reprojection *reprojection, int32_t worker,
                                       double *residual, const float *const *maps, size_t count,
-                                      const float *i_plus, const float *i_zero,
-                                      const float *i_minus);
+                                      const float *const *planes);
 
 #endif

@@ -6,156 +6,278 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "base/ini.h"
 #include "base/memory.h"
+#include "run/channels.h"
+#include "run/planes.h"
 
 #define MAX_RIG_BYTES (1 << 20)
+#define MOST_DEFOCUS_M 1e3
 
-/* A rig as a person writes it: pitch of the sensor and magnification instead of the pixel at the object,
-   one defocus for both planes unless they differ. */
+/* What a plane's section says; NaN where it says nothing. */
+typedef struct plane_keys {
+    double defocus_m, gain, shift_x_px, shift_y_px, magnification, rotation_rad;
+} plane_keys;
+
+/* A rig as a person writes it: pitch of the sensor and magnification instead of the pixel at the object, one defocus
+   for all planes unless they differ, planes as sums of channels. */
 typedef struct rig_file {
-    double wavelength_m, pixel_m, magnification, defocus_m, defocus_plus_m, defocus_minus_m;
-    double frame_rate_hz, cutoff_m;
-    int planes, polarity, boundary;
-    int32_t binning;
-    bool zero_border;
-    char plus[512], zero[512], minus[512], reference[512];
+    ptie_rig rig;
+    double pitch_m, magnification, defocus_m;
+    int set, polarity;
+    char planes[PTIE_ROLES][512];
+    plane_keys plane[PTIE_ROLES];
 } rig_file;
 
-static const char *const plane_names[] = {"pair", "triple", "reference", NULL};
+static const char *const set_names[] = {"pair", "triple", "five", "reference", NULL};
+static const char *const layout_names[] = {"separate", "mosaic", "side-by-side", "top-bottom", "quadrants", NULL};
+static const char *const demosaic_names[] = {"none", "bilinear", "fourier", NULL};
+static const char *const background_names[] = {"none", "plane", "zernike", NULL};
 static const char *const polarity_names[] = {"negative", "auto", "positive", NULL}; /* index - 1 */
 static const char *const boundary_names[] = {"periodic", "mirror", NULL};
 
+/* Planes in units of 'defocus'. */
+static const double steps[PTIE_ROLES] = {1, -1, 0, 2, -2};
+
+/* int64_t[2]: "0:100", end excluded. */
+static const char *parse_frames(void *field, const char *text) {
+    long long first, end;
+    int used = 0;
+    if (sscanf(text, "%18lld :%18lld%n", &first, &end, &used) != 2 || text[used] || first < 0 || end <= first)
+        return "frames such as 0:100, the end excluded";
+    memcpy(field, (int64_t[2]){first, end}, sizeof(int64_t[2]));
+    return NULL;
+}
+
+static void print_frames(ptie_text *out, const void *field) {
+    const int64_t *frames = field;
+    if (frames[1] > frames[0]) ptie_text_append(out, "%lld:%lld", (long long)frames[0], (long long)frames[1]);
+}
+
+static const char *parse_rect(void *field, const char *text) {
+    ptie_rect r;
+    int used = 0;
+    if (sscanf(text, "%9d ,%9d ,%9d ,%9d%n", &r.x_px, &r.y_px, &r.width_px, &r.height_px, &used) != 4 ||
+        text[used] || r.x_px < 0 || r.y_px < 0 || r.width_px < 1 || r.height_px < 1)
+        return "a rectangle x,y,width,height in pixels";
+    memcpy(field, &r, sizeof r);
+    return NULL;
+}
+
+static void print_rect(ptie_text *out, const void *field) {
+    const ptie_rect *r = field;
+    if (r->width_px > 0) ptie_text_append(out, "%d,%d,%d,%d", r->x_px, r->y_px, r->width_px, r->height_px);
+}
+
+static const ptie_ini_type frames_type = {parse_frames, print_frames};
+static const ptie_ini_type rect_type = {parse_rect, print_rect};
+
+/* clang-format off */
 #define FIELD(name) offsetof(rig_file, name)
-#define LENGTH_KEY(section_, key_, field_, low_, high_)                                            \
-    {.section = section_, .name = key_, .kind = PTIE_INI_QUANTITY, .quantity = PTIE_LENGTH,        \
+#define QUANTITY_KEY(section_, key_, field_, quantity_, low_, high_)                               \
+    {.section = section_, .name = key_, .kind = PTIE_INI_QUANTITY, .quantity = quantity_,          \
      .offset = FIELD(field_), .low = low_, .high = high_}
+#define INTEGER_KEY(section_, key_, field_, low_, high_)                                           \
+    {.section = section_, .name = key_, .kind = PTIE_INI_INTEGER, .offset = FIELD(field_),         \
+     .low = low_, .high = high_}
+#define BOOLEAN_KEY(section_, key_, field_)                                                        \
+    {.section = section_, .name = key_, .kind = PTIE_INI_BOOLEAN, .offset = FIELD(field_)}
 #define TEXT_KEY(section_, key_, field_)                                                           \
     {.section = section_, .name = key_, .kind = PTIE_INI_TEXT, .offset = FIELD(field_),            \
      .text_bytes = sizeof((rig_file *)0)->field_}
 #define CHOICE_KEY(section_, key_, field_, choices_)                                               \
     {.section = section_, .name = key_, .kind = PTIE_INI_CHOICE, .offset = FIELD(field_),          \
      .choices = choices_}
+#define OWN_KEY(section_, key_, field_, type_)                                                     \
+    {.section = section_, .name = key_, .kind = PTIE_INI_OWN, .offset = FIELD(field_),             \
+     .type = &type_}
+#define PLANE_KEYS(section_, role_)                                                                \
+    QUANTITY_KEY(section_, "defocus", plane[role_].defocus_m, PTIE_LENGTH, -MOST_DEFOCUS_M, MOST_DEFOCUS_M), \
+    QUANTITY_KEY(section_, "gain", plane[role_].gain, PTIE_NUMBER, 1e-6, 1e6),                     \
+    QUANTITY_KEY(section_, "shift_x", plane[role_].shift_x_px, PTIE_NUMBER, -32768, 32768),        \
+    QUANTITY_KEY(section_, "shift_y", plane[role_].shift_y_px, PTIE_NUMBER, -32768, 32768),        \
+    QUANTITY_KEY(section_, "magnification", plane[role_].magnification, PTIE_NUMBER, 0.1, 10),     \
+    QUANTITY_KEY(section_, "rotation", plane[role_].rotation_rad, PTIE_ANGLE, -3.15, 3.15)
 
 static const ptie_ini_key rig_keys[] = {
     {.section = "optics", .name = "wavelength", .kind = PTIE_INI_QUANTITY, .quantity = PTIE_LENGTH,
-     .offset = FIELD(wavelength_m), .low = 1e-12, .high = 1e-3, .required = true},
+     .offset = FIELD(rig.wavelength_m), .low = 1e-12, .high = 1e-3, .required = true},
     {.section = "optics", .name = "pixel", .kind = PTIE_INI_QUANTITY, .quantity = PTIE_LENGTH,
-     .offset = FIELD(pixel_m), .low = 1e-10, .high = 1, .required = true},
-    {.section = "optics", .name = "magnification", .kind = PTIE_INI_QUANTITY, .quantity = PTIE_NUMBER,
-     .offset = FIELD(magnification), .low = 1e-6, .high = 1e6},
-    LENGTH_KEY("optics", "defocus", defocus_m, -1e3, 1e3),
-    LENGTH_KEY("optics", "defocus_plus", defocus_plus_m, -1e3, 1e3),
-    LENGTH_KEY("optics", "defocus_minus", defocus_minus_m, -1e3, 1e3),
-    CHOICE_KEY("planes", "layout", planes, plane_names),
-    TEXT_KEY("planes", "plus", plus),
-    TEXT_KEY("planes", "zero", zero),
-    TEXT_KEY("planes", "minus", minus),
-    TEXT_KEY("planes", "reference", reference),
-    {.section = "recording", .name = "frame_rate", .kind = PTIE_INI_QUANTITY, .quantity = PTIE_RATE,
-     .offset = FIELD(frame_rate_hz), .low = 0, .high = 1e12},
+     .offset = FIELD(pitch_m), .low = 1e-10, .high = 1, .required = true},
+    QUANTITY_KEY("optics", "magnification", magnification, PTIE_NUMBER, 1e-6, 1e6),
+    QUANTITY_KEY("optics", "defocus", defocus_m, PTIE_LENGTH, -MOST_DEFOCUS_M, MOST_DEFOCUS_M),
+    CHOICE_KEY("planes", "set", set, set_names),
+    CHOICE_KEY("planes", "layout", rig.layout, layout_names),
+    OWN_KEY("planes", "mosaic", rig.angle_deg, ptie_mosaic_type),
+    INTEGER_KEY("planes", "roi_x", rig.roi_x, 0, 32767),
+    INTEGER_KEY("planes", "roi_y", rig.roi_y, 0, 32767),
+    TEXT_KEY("planes", "plus", planes[PTIE_PLUS]),
+    TEXT_KEY("planes", "minus", planes[PTIE_MINUS]),
+    TEXT_KEY("planes", "zero", planes[PTIE_ZERO]),
+    TEXT_KEY("planes", "plus2", planes[PTIE_PLUS2]),
+    TEXT_KEY("planes", "minus2", planes[PTIE_MINUS2]),
+    PLANE_KEYS("plus", PTIE_PLUS),
+    PLANE_KEYS("minus", PTIE_MINUS),
+    PLANE_KEYS("zero", PTIE_ZERO),
+    PLANE_KEYS("plus2", PTIE_PLUS2),
+    PLANE_KEYS("minus2", PTIE_MINUS2),
+    QUANTITY_KEY("recording", "frame_rate", rig.frame_rate_hz, PTIE_RATE, 0, 1e12),
+    TEXT_KEY("recording", "reference", rig.reference),
+    TEXT_KEY("recording", "dark", rig.dark),
+    TEXT_KEY("recording", "mask", rig.mask),
+    OWN_KEY("recording", "still_frames", rig.still_first, frames_type),
+    QUANTITY_KEY("camera", "saturation", rig.saturation_counts, PTIE_NUMBER, 0, 1e9),
+    QUANTITY_KEY("camera", "electrons_per_count", rig.electrons_per_count, PTIE_NUMBER, 0, 1e9),
+    QUANTITY_KEY("camera", "read_noise", rig.read_noise_electrons, PTIE_NUMBER, 0, 1e9),
+    CHOICE_KEY("preprocess", "demosaic", rig.demosaic, demosaic_names),
+    BOOLEAN_KEY("preprocess", "flat_field", rig.flat_field),
+    BOOLEAN_KEY("preprocess", "match_gain", rig.match_gain),
+    QUANTITY_KEY("preprocess", "mask_below", rig.mask_below, PTIE_NUMBER, 0, 1),
+    CHOICE_KEY("preprocess", "background", rig.background, background_names),
+    INTEGER_KEY("solver", "binning", rig.binning, 1, 64),
+    CHOICE_KEY("solver", "boundary", rig.boundary, boundary_names),
+    QUANTITY_KEY("solver", "cutoff", rig.cutoff_m, PTIE_LENGTH, 0, 1e3),
+    BOOLEAN_KEY("solver", "zero_border", rig.zero_border),
     CHOICE_KEY("flow", "polarity", polarity, polarity_names),
-    {.section = "solver", .name = "binning", .kind = PTIE_INI_INTEGER, .offset = FIELD(binning), .low = 1,
-     .high = 64},
-    CHOICE_KEY("solver", "boundary", boundary, boundary_names),
-    LENGTH_KEY("solver", "cutoff", cutoff_m, 0, 1e3),
-    {.section = "solver", .name = "zero_border", .kind = PTIE_INI_BOOLEAN, .offset = FIELD(zero_border)},
+    OWN_KEY("flow", "still", rig.still, rect_type),
 };
+/* clang-format on */
 enum { RIG_KEYS = sizeof rig_keys / sizeof *rig_keys };
 
 void ptie_rig_defaults(ptie_rig *rig) {
-    *rig = (ptie_rig){.struct_size = sizeof *rig, .wavelength_m = 532e-9, .defocus_plus_m = 10e-3,
-                      .defocus_minus_m = -10e-3, .polarity = 0, .binning = 1, .boundary = PTIE_MIRROR,
+    *rig = (ptie_rig){.struct_size = sizeof *rig, .wavelength_m = 532e-9, .demosaic = PTIE_DEMOSAIC_BILINEAR,
+                      .flat_field = true, .match_gain = true, .boundary = PTIE_MIRROR, .binning = 1,
                       .zero_border = true};
+    for (int i = 0; i < PTIE_ROLES; i++)
+        rig->plane[i] = (ptie_plane){.defocus_m = 10e-3 * steps[i], .gain = 1, .magnification = 1};
+    rig->plane[PTIE_PLUS].used = rig->plane[PTIE_MINUS].used = true;
 }
 
 /* A path in a rig is relative to the rig's own folder. */
-static ptie_status resolve(char *path, size_t bytes, const char *rig_path) {
+static ptie_status resolve(char path[512], const char *name, const char *rig_path) {
     const char *slash = strrchr(rig_path, '/');
     if (!path[0] || path[0] == '/' || !slash) return PTIE_OK;
-    size_t folder = (size_t)(slash - rig_path) + 1, name = strlen(path) + 1;
-    if (folder + name > bytes)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: reference: path longer than %zu bytes", rig_path, bytes - 1);
-    memmove(path + folder, path, name);
+    const size_t folder = (size_t)(slash - rig_path) + 1, length = strlen(path) + 1;
+    if (folder + length > 512)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: %s: path longer than 511 bytes", rig_path, name);
+    memmove(path + folder, path, length);
     memcpy(path, rig_path, folder);
     return PTIE_OK;
 }
 
-/* Planes are data sets inside the recording. */
-static ptie_status check_data_set(const char *name, const char *key, const char *path) {
-    if (!name[0] || name[0] == '/') return PTIE_OK;
-    return PTIE_FAIL(PTIE_EFORMAT, "%s: %s: expected a data set such as /entry/data/%s, found '%s'", path,
-                     key, key, name);
+static double or_else(double value, double otherwise) {
+    return isnan(value) ? otherwise : value;
 }
 
-static ptie_status convert(ptie_rig *rig, const rig_file *file, const char *path) {
-    const bool plus = !isnan(file->defocus_plus_m), minus = !isnan(file->defocus_minus_m);
-    const bool both = !isnan(file->defocus_m);
-    if (both && (plus || minus))
-        return PTIE_FAIL(PTIE_EINVAL, "%s: 'defocus' does not go with 'defocus_plus' and 'defocus_minus'", path);
-    if (!both && plus != minus && (minus || file->planes != PTIE_PLANES_REFERENCE))
-        return PTIE_FAIL(PTIE_EINVAL, "%s: missing key '%s' in [optics] (expected a length such as -10 mm)",
-                         path, plus ? "defocus_minus" : "defocus_plus");
-    double plus_m = both ? file->defocus_m : file->defocus_plus_m;
-    double minus_m = both ? -file->defocus_m : minus ? file->defocus_minus_m : -plus_m;
-    if (isnan(plus_m) || plus_m == 0)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: missing key 'defocus' in [optics] (expected a length such as 10 mm)",
-                         path);
-    if (file->planes != PTIE_PLANES_REFERENCE && minus_m >= plus_m)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: defocus_minus must lie below defocus_plus (found %g m and %g m)",
-                         path, minus_m, plus_m);
-    PTIE_TRY(check_data_set(file->plus, "plus", path));
-    PTIE_TRY(check_data_set(file->zero, "zero", path));
-    PTIE_TRY(check_data_set(file->minus, "minus", path));
-    ptie_rig_defaults(rig);
-    rig->wavelength_m = file->wavelength_m;
-    rig->pixel_m = file->pixel_m / file->magnification;
-    rig->defocus_plus_m = plus_m;
-    rig->defocus_minus_m = minus_m;
-    rig->planes = (ptie_planes)file->planes;
-    rig->polarity = file->polarity - 1;
-    rig->binning = file->binning;
-    rig->boundary = (ptie_boundary)file->boundary;
-    rig->cutoff_m = file->cutoff_m;
-    rig->frame_rate_hz = file->frame_rate_hz;
-    rig->zero_border = file->zero_border;
-    memcpy(rig->plus, file->plus, sizeof rig->plus);
-    memcpy(rig->zero, file->zero, sizeof rig->zero);
-    memcpy(rig->minus, file->minus, sizeof rig->minus);
-    memcpy(rig->reference, file->reference, sizeof rig->reference);
-    return resolve(rig->reference, sizeof rig->reference, path);
+/* Where a plane is on the sensor or in the file. */
+static ptie_status set_origin(ptie_plane *plane, const rig_file *file, int role, const char *path) {
+    const char *name = ptie_role_names[role], *text = file->planes[role];
+    char expected[128];
+    if (file->rig.layout == PTIE_LAYOUT_SEPARATE) {
+        memcpy(plane->source, text, sizeof plane->source);
+        if (!text[0] || text[0] == '/') return PTIE_OK;
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: [planes] %s: expected a data set such as /entry/data/%s, found '%s'",
+                         path, name, name, text);
+    }
+    if (!text[0])
+        return PTIE_FAIL(PTIE_EINVAL, "%s: missing key '%s' in [planes] (expected its channel)", path, name);
+    const char *wrong = ptie_mix_parse(plane->mix, &file->rig, text, expected);
+    if (!wrong) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EFORMAT, "%s: [planes] %s: expected %s, found '%.80s'", path, name, wrong, text);
 }
+
+static ptie_status set_plane(ptie_plane *plane, const rig_file *file, int role, const char *path) {
+    const plane_keys *keys = &file->plane[role];
+    const double z_m = or_else(keys->defocus_m, role == PTIE_ZERO ? 0 : steps[role] * file->defocus_m);
+    if (isnan(z_m))
+        return PTIE_FAIL(PTIE_EINVAL, "%s: missing key 'defocus' in [optics] (expected a length such as 10 mm), "
+                                      "or in [%s]", path, ptie_role_names[role]);
+    *plane = (ptie_plane){.used = true,
+                          .defocus_m = z_m,
+                          .gain = or_else(keys->gain, 1),
+                          .shift_x_px = or_else(keys->shift_x_px, 0),
+                          .shift_y_px = or_else(keys->shift_y_px, 0),
+                          .magnification = or_else(keys->magnification, 1),
+                          .rotation_rad = or_else(keys->rotation_rad, 0)};
+    return set_origin(plane, file, role, path);
+}
+
+/* A plane that the set does not have is a mistake in either. */
+static ptie_status check_unused(const rig_file *file, int role, const char *path) {
+    if (!file->planes[role][0]) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EINVAL, "%s: [planes] %s has no place in set '%s'", path, ptie_role_names[role],
+                     set_names[file->set]);
+}
+
+static ptie_status convert(rig_file *file, const char *path) {
+    ptie_rig *rig = &file->rig;
+    rig->pixel_m = file->pitch_m / file->magnification;
+    rig->polarity = file->polarity - 1;
+    rig->one_plane = file->set == PTIE_SET_REFERENCE;
+    if (rig->layout == PTIE_LAYOUT_MOSAIC && rig->angle_deg[0] == rig->angle_deg[1])
+        return PTIE_FAIL(PTIE_EINVAL, "%s: missing key 'mosaic' in [planes] (expected sony, crysta or four angles)",
+                         path);
+    for (int i = 0; i < PTIE_ROLES; i++) {
+        rig->plane[i].used = ptie_set_has((ptie_plane_set)file->set, i);
+        PTIE_TRY(rig->plane[i].used ? set_plane(&rig->plane[i], file, i, path) : check_unused(file, i, path));
+    }
+    PTIE_TRY(ptie_rig_check_planes(rig, path));
+    PTIE_TRY(resolve(rig->reference, "reference", path));
+    PTIE_TRY(resolve(rig->dark, "dark", path));
+    return resolve(rig->mask, "mask", path);
+}
+
+static const plane_keys nothing_said = {(double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN, (double)NAN};
 
 ptie_status ptie_rig_read(ptie_rig *rig, const char *path) {
     char *text;
     size_t bytes;
     PTIE_TRY(ptie_read_file(&text, &bytes, path, MAX_RIG_BYTES));
-    const double none = (double)NAN;
-    rig_file file = {.defocus_m = none, .defocus_plus_m = none, .defocus_minus_m = none,
-                     .magnification = 1, .polarity = 1, .binning = 1, .boundary = PTIE_MIRROR,
-                     .zero_border = true};
+    rig_file file = {.magnification = 1, .defocus_m = (double)NAN, .polarity = 1};
+    ptie_rig_defaults(&file.rig);
+    for (int i = 0; i < PTIE_ROLES; i++) file.plane[i] = nothing_said;
     ptie_status status = ptie_ini_read(&file, rig_keys, RIG_KEYS, text, path);
-    if (status == PTIE_OK) status = convert(rig, &file, path);
+    if (status == PTIE_OK) status = convert(&file, path);
+    if (status == PTIE_OK) *rig = file.rig;
     ptie_free(text);
     return status;
 }
 
+static double unless(double value, double otherwise) {
+    return value == otherwise ? (double)NAN : value;
+}
+
+/* The file's form of a plane: what is not as by default. */
+static plane_keys keys_of(const ptie_plane *plane, double expected_m) {
+    return (plane_keys){.defocus_m = unless(plane->defocus_m, expected_m),
+                        .gain = unless(plane->gain, 1),
+                        .shift_x_px = unless(plane->shift_x_px, 0),
+                        .shift_y_px = unless(plane->shift_y_px, 0),
+                        .magnification = unless(plane->magnification, 1),
+                        .rotation_rad = unless(plane->rotation_rad, 0)};
+}
+
+static void print_origin(ptie_text *text, const ptie_rig *rig, const ptie_plane *plane) {
+    if (rig->layout == PTIE_LAYOUT_SEPARATE)
+        ptie_text_append(text, "%s", plane->source);
+    else
+        ptie_mix_print(text, rig, plane->mix);
+}
+
 char *ptie_rig_print(const ptie_rig *rig) {
-    const bool equal = rig->defocus_minus_m == -rig->defocus_plus_m;
-    const double none = (double)NAN;
-    rig_file file = {.wavelength_m = rig->wavelength_m, .pixel_m = rig->pixel_m, .magnification = 1,
-                     .defocus_m = equal ? rig->defocus_plus_m : none,
-                     .defocus_plus_m = equal ? none : rig->defocus_plus_m,
-                     .defocus_minus_m = equal ? none : rig->defocus_minus_m,
-                     .frame_rate_hz = rig->frame_rate_hz, .cutoff_m = rig->cutoff_m,
-                     .planes = (int)rig->planes, .polarity = rig->polarity + 1,
-                     .boundary = (int)rig->boundary, .binning = rig->binning,
-                     .zero_border = rig->zero_border};
-    memcpy(file.plus, rig->plus, sizeof file.plus);
-    memcpy(file.zero, rig->zero, sizeof file.zero);
-    memcpy(file.minus, rig->minus, sizeof file.minus);
-    memcpy(file.reference, rig->reference, sizeof file.reference);
+    const double defocus_m = rig->plane[PTIE_PLUS].defocus_m;
+    rig_file file = {.rig = *rig, .pitch_m = rig->pixel_m, .magnification = 1, .defocus_m = defocus_m,
+                     .set = (int)ptie_rig_set(rig), .polarity = rig->polarity + 1};
     ptie_text text = {0};
+    for (int i = 0; i < PTIE_ROLES; i++) {
+        file.plane[i] = nothing_said;
+        if (!rig->plane[i].used) continue;
+        ptie_text origin = {0};
+        print_origin(&origin, rig, &rig->plane[i]);
+        snprintf(file.planes[i], sizeof file.planes[i], "%s", origin.data ? origin.data : "");
+        text.failed |= origin.failed;
+        ptie_text_free(&origin);
+        file.plane[i] = keys_of(&rig->plane[i], steps[i] * defocus_m);
+    }
     ptie_ini_print(&text, &file, rig_keys, RIG_KEYS);
     if (!text.failed) return text.data;
     ptie_text_free(&text);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Rig files; contracts as in <ptie/run.h>. */
+/* Rig files; contracts as in <ptie/rig.h>. */
 #ifndef PTIE_RUN_RIG_H
 #define PTIE_RUN_RIG_H
 
-#include <ptie/run.h>
+#include <ptie/rig.h>
 
 #include "base/status.h"
 

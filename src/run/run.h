@@ -7,6 +7,9 @@
 
 #include "kernel/engine.h"
 
+/* The recording in messages and provenance: that of all planes, or of I+. */
+const char *ptie_run_name(const ptie_run_params *params);
+
 ptie_status ptie_run_pipeline(const ptie_engine *engine, const ptie_run_params *params,
                               ptie_run_summary *summary, ptie_progress progress);
 

@@ -176,7 +176,7 @@ static void print_rig(ptie_text *text, const ptie_simulate_params *p) {
                      ptie_print_quantity(wavelength, p->flow.wavelength_m, PTIE_LENGTH),
                      ptie_print_quantity(pixel, p->flow.pixel_m, PTIE_LENGTH),
                      ptie_print_quantity(defocus, p->defocus_m, PTIE_LENGTH));
-    ptie_text_append(text, "[planes]\nlayout = pair\nplus = " PLUS "\nminus = " MINUS "\n\n");
+    ptie_text_append(text, "[planes]\nset = pair\nplus = " PLUS "\nminus = " MINUS "\n\n");
     ptie_text_append(text, "[recording]\nframe_rate = %s\n\n",
                      ptie_print_quantity(rate, p->frame_rate_hz, PTIE_RATE));
     ptie_text_append(text, "[flow]\npolarity = %s\n\n",

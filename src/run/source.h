@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The frames of a run: the planes a rig names, binned, with the no-flow reference. */
+/* The reader's side of a run: the sensor images of a frame, as the camera wrote them, from the files that the rig
+   and the caller name. */
 #ifndef PTIE_RUN_SOURCE_H
 #define PTIE_RUN_SOURCE_H
 
@@ -9,26 +10,21 @@
 
 typedef struct ptie_source ptie_source;
 
-/* Opens all recordings of a run and checks that they fit together.  Errors name both files and both
+typedef struct ptie_source_shape {
+    int32_t width_px, height_px; /* of an image */
+    int32_t images;              /* per frame: one per plane (PTIE_LAYOUT_SEPARATE, in the order of
+                                    ptie_rig_planes without the reference), else 1 */
+    int64_t frames;
+    double frame_rate_hz;        /* what the recording says, 0: nothing */
+} ptie_source_shape;
+
+/* Opens all recordings of a run's planes and checks that they fit together.  Errors name both files and both
    sizes. */
 ptie_status ptie_source_open(ptie_source **out, const ptie_run_params *params);
 void ptie_source_close(ptie_source *source); /* NULL is fine */
-
-/* Size after binning, frames in the recording, and what the recording says of its rate (0: nothing). */
-typedef struct ptie_source_shape {
-    int32_t width_px, height_px;
-    int64_t frames;
-    double frame_rate_hz;
-    bool has_zero, has_minus; /* planes ptie_source_read fills; i_plus always */
-} ptie_source_shape;
-
 ptie_source_shape ptie_source_get_shape(const ptie_source *source);
 
-/* Reads one frame's planes; i_zero gets the reference when the rig has one. */
-ptie_status ptie_source_read(ptie_source *source, int64_t frame, float *i_plus, float *i_zero,
-                             float *i_minus);
-
-/* Averages binning x binning pixels; what does not fill a bin at the right and the bottom is left out. */
-void ptie_bin(float *out, const float *image, int32_t width, int32_t height, int32_t binning);
+/* images (out): shape.images maps of (height, width). */
+ptie_status ptie_source_read(ptie_source *source, int64_t frame, float *const *images);
 
 #endif

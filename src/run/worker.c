@@ -73,10 +73,8 @@ static void pin_border(float *phase, int32_t width, int32_t height, float *borde
 }
 
 ptie_status ptie_frame_solve(const ptie_frame_plan *plan, int32_t worker, float *phase, float *denoised,
-                             const float *i_plus, const float *i_zero, const float *i_minus) {
+                             const float *const *planes) {
     void *scratch = plan->scratch[worker];
-    const float *planes[3];
-    ptie_rig_order(planes, i_plus, i_zero, i_minus);
     PTIE_TRY(ptie_tie_solve(plan->solver, phase, planes, scratch, NULL));
     if (plan->zero_border) pin_border(phase, plan->width, plan->height, scratch);
     if (!plan->denoiser) return PTIE_OK;

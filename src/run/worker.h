@@ -15,9 +15,9 @@ ptie_status ptie_frame_plan_create(ptie_frame_plan **out, const ptie_engine *eng
                                    int32_t height_px, const ptie_denoiser_params *params);
 void ptie_frame_plan_free(ptie_frame_plan *plan); /* NULL is fine */
 
-/* phase, denoised (out; denoised untouched without a model) from the planes; i_zero or i_minus may be
-   NULL as the rig says.  `worker` picks the scratch. */
+/* phase, denoised (out; denoised untouched without a model) from the planes in the order of ptie_rig_solver.
+   `worker` picks the scratch. */
 ptie_status ptie_frame_solve(const ptie_frame_plan *plan, int32_t worker, float *phase, float *denoised,
-                             const float *i_plus, const float *i_zero, const float *i_minus);
+                             const float *const *planes);
 
 #endif

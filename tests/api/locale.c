@@ -101,7 +101,7 @@ static void simulate_and_run(const char *language) {
     assert_true(rig.pixel_m == 12.5e-6);
     ptie_run_params_init(&p);
     p.rig = &rig;
-    p.plus = recording;
+    p.recording = recording;
     p.output = result;
     p.metrics_csv = csv;
     p.jet = (ptie_rect){24, 24, 16, 16};

@@ -148,13 +148,14 @@ static void the_rig_fits_the_recording(void **state) {
     simulate(&p, 2);
     assert_ok(ptie_rig_read(&rig, p.rig));
     assert_true(rig.wavelength_m == 633e-9 && rig.pixel_m == 13.7e-6 &&
-                rig.defocus_plus_m == 7e-3 && rig.defocus_minus_m == -7e-3 &&
+                rig.plane[PTIE_PLUS].defocus_m == 7e-3 && rig.plane[PTIE_MINUS].defocus_m == -7e-3 &&
                 rig.frame_rate_hz == 25e3);
-    assert_int_equal(rig.planes, PTIE_PLANES_PAIR);
+    assert_false(rig.one_plane || rig.plane[PTIE_ZERO].used);
+    assert_int_equal(rig.layout, PTIE_LAYOUT_SEPARATE);
     assert_int_equal(rig.boundary, p.boundary);
     assert_int_equal(rig.polarity, 1);
-    assert_string_equal(rig.plus, "/entry/data/plus");
-    assert_string_equal(rig.minus, "/entry/data/minus");
+    assert_string_equal(rig.plane[PTIE_PLUS].source, "/entry/data/plus");
+    assert_string_equal(rig.plane[PTIE_MINUS].source, "/entry/data/minus");
 }
 
 static int stop_after_three(void *user, uint64_t done, uint64_t total, const char *note) {

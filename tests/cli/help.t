@@ -225,9 +225,13 @@ reconstruct
     -r, --rig FILE            how the set-up is built (.ini)
     -o, --output FILE         result to write (.h5)
         --plus FILE           planes in files of their own: beyond focus
-        --zero FILE           in focus
         --minus FILE          before focus
+        --zero FILE           in focus
+        --plus2 FILE          farther beyond focus
+        --minus2 FILE         farther before focus
         --reference FILE      no-flow recording, instead of the rig's
+        --dark FILE           recording without light, instead of the rig's
+        --mask FILE           image of what is opaque (0), instead of the rig's
         --first N             first frame (default: 0)
     -n, --count N             frames; 0 = to the end (default: 0)
         --step N              every N-th frame (default: 1)
@@ -248,7 +252,7 @@ reconstruct
     -h, --help                this text
   
   RECORDING holds all planes (HDF5; the rig names the data sets), or the flow
-  where the rig's layout is a reference. Files: HDF5 (FILE.h5 or
+  where the rig's set is a reference. Files: HDF5 (FILE.h5 or
   FILE.h5:/path/inside), TIFF, NPY, PNG, a folder of numbered images, or a
   pattern with one %d.
   
@@ -314,9 +318,13 @@ run
     -r, --rig FILE            how the set-up is built (.ini)
     -o, --output FILE         result to write (.h5)
         --plus FILE           planes in files of their own: beyond focus
-        --zero FILE           in focus
         --minus FILE          before focus
+        --zero FILE           in focus
+        --plus2 FILE          farther beyond focus
+        --minus2 FILE         farther before focus
         --reference FILE      no-flow recording, instead of the rig's
+        --dark FILE           recording without light, instead of the rig's
+        --mask FILE           image of what is opaque (0), instead of the rig's
         --first N             first frame (default: 0)
     -n, --count N             frames; 0 = to the end (default: 0)
         --step N              every N-th frame (default: 1)
@@ -337,7 +345,7 @@ run
     -h, --help                this text
   
   RECORDING holds all planes (HDF5; the rig names the data sets), or the flow
-  where the rig's layout is a reference. Files: HDF5 (FILE.h5 or
+  where the rig's set is a reference. Files: HDF5 (FILE.h5 or
   FILE.h5:/path/inside), TIFF, NPY, PNG, a folder of numbered images, or a
   pattern with one %d.
   

@@ -77,7 +77,7 @@ A rig without wavelength, or with one without unit
   [1]
   $ sed 's/^plus.*/plus = nowhere/' jet.ini > bad.ini
   $ ptie reconstruct --rig bad.ini jet.h5 -o phase.h5
-  ! ptie: bad.ini: plus: expected a data set such as /entry/data/plus, found 'nowhere'
+  ! ptie: bad.ini: [planes] plus: expected a data set such as /entry/data/plus, found 'nowhere'
   [1]
   $ sed 's/data.plus/data\/nowhere/' jet.ini > bad.ini
   $ ptie reconstruct --rig bad.ini jet.h5 -o phase.h5
@@ -106,14 +106,11 @@ Planes that the layout does not use
   $ $TESTS/npy a.npy 2 32 32
   $ printf '[optics]\nwavelength = 532 nm\npixel = 20 um\ndefocus = 10 mm\n' > rig.ini
   $ ptie reconstruct --rig rig.ini --plus a.npy --zero a.npy --minus a.npy -o phase.h5
-  ! ptie: run: plane 'zero' has no place in the rig's layout (expected the planes of 'pair')
+  ! ptie: run: plane 'zero' has no place in the rig's set of planes
   [2]
+  $ printf '[planes]\nset = reference\n' >> rig.ini
   $ ptie reconstruct --rig rig.ini --plus a.npy --minus a.npy --reference a.npy -o phase.h5
-  ! ptie: run: a no-flow reference has no place in the rig's layout (expected the planes of 'pair')
-  [2]
-  $ printf '[planes]\nlayout = reference\n' >> rig.ini
-  $ ptie reconstruct --rig rig.ini --plus a.npy --minus a.npy --reference a.npy -o phase.h5
-  ! ptie: run: plane 'minus' has no place in the rig's layout (expected the planes of 'reference')
+  ! ptie: run: plane 'minus' has no place in the rig's set of planes
   [2]
 
 Planes of different sizes or lengths

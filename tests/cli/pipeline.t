@@ -11,7 +11,7 @@ Simulate, train, evaluate, run, denoise, measure
   defocus = 10 mm
   
   [planes]
-  layout = pair
+  set = pair
   plus = /entry/data/plus
   minus = /entry/data/minus
   

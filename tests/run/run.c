@@ -77,11 +77,17 @@ static void init(setting *s) {
     snprintf(s->output, sizeof s->output, "%s", support_temporary("out.h5"));
     snprintf(s->reference, sizeof s->reference, "%s", support_temporary("flat.npy"));
     s->params.rig = &s->rig;
-    s->params.plus = s->plus;
-    s->params.minus = s->minus;
+    s->params.plane[PTIE_PLUS] = s->plus;
+    s->params.plane[PTIE_MINUS] = s->minus;
     s->params.truth = s->truth;
     s->params.output = s->output;
     s->params.overwrite = true;
+}
+
+static void take_one_plane(setting *s) {
+    s->rig.one_plane = true;
+    s->rig.plane[PTIE_MINUS].used = false;
+    s->params.plane[PTIE_MINUS] = NULL;
 }
 
 static ptie_status run_with(const setting *s, int32_t threads, ptie_run_summary *summary) {
@@ -158,7 +164,7 @@ static void the_truth_leaves_the_noise_as_residual(void **state) {
        6.3e-7; bounds four times that. */
     assert_near(summary.phase.residual.mean, 0, 5e-5);
     assert_near(summary.truth.residual.mean, 0, 3e-6);
-    s.params.plus = path;
+    s.params.plane[PTIE_PLUS] = path;
     assert_ok(run_with(&s, 2, &summary));
     assert_near(summary.phase.residual.mean, 0, 5e-5);
     assert_near(summary.truth.residual.mean, sqrt(noise / all), 1e-4);
@@ -193,8 +199,7 @@ static void one_plane_with_a_reference_gives_the_same_phase(void **state) {
     setting s;
     ptie_run_summary summary;
     init(&s);
-    s.rig.planes = PTIE_PLANES_REFERENCE;
-    s.params.minus = NULL;
+    take_one_plane(&s);
     s.params.reference = s.reference;
     assert_ok(run_with(&s, 2, &summary));
     /* One difference over dz instead of two over 2 dz: twice the bound of the pair. */
@@ -296,8 +301,8 @@ static void a_frame_without_a_metric_does_not_hide_it(void **state) {
         snprintf(paths[plane], sizeof paths[0], "%s", support_temporary(plane ? "still-.npy" : "still+.npy"));
         write_recording(paths[plane], frames[plane], FRAMES);
     }
-    s.params.plus = paths[0];
-    s.params.minus = paths[1];
+    s.params.plane[PTIE_PLUS] = paths[0];
+    s.params.plane[PTIE_MINUS] = paths[1];
     assert_ok(run_with(&s, 2, &summary));
     assert_true(isfinite(summary.phase.cnr.mean) && summary.phase.cnr.mean > 1);
 }
@@ -315,7 +320,7 @@ static void maps_without_flow_are_kept_without_regions(void **state) {
     snprintf(path, sizeof path, "%s", support_temporary("still.npy"));
     snprintf(csv, sizeof csv, "%s", support_temporary("still.csv"));
     write_recording(path, still, FRAMES);
-    s.params.plus = s.params.minus = path;
+    s.params.plane[PTIE_PLUS] = s.params.plane[PTIE_MINUS] = path;
     s.params.metrics_csv = csv;
     assert_ok(run_with(&s, 2, &summary));
     assert_false(summary.has_regions);
@@ -346,25 +351,25 @@ static void what_does_not_fit_is_refused_and_leaves_nothing(void **state) {
     init(&s);
     remove(s.output);
     write_recording(support_temporary("short.npy"), small, 1);
-    s.params.minus = support_temporary("short.npy");
+    s.params.plane[PTIE_MINUS] = support_temporary("short.npy");
     assert_fails(run_with(&s, 1, &summary), PTIE_ESIZE, "expected 11, found 1");
-    s.params.minus = NULL;
+    s.params.plane[PTIE_MINUS] = NULL;
     assert_fails(run_with(&s, 1, &summary), PTIE_EINVAL, "plane 'minus' is missing");
-    s.rig.planes = PTIE_PLANES_REFERENCE;
+    take_one_plane(&s);
     assert_fails(run_with(&s, 1, &summary), PTIE_EINVAL, "no-flow reference is missing");
 
     init(&s);
     s.params.first = 11;
     assert_fails(run_with(&s, 1, &summary), PTIE_EINVAL, "expected 0..10, found 11");
     s.params.first = 0;
-    s.params.plus = support_temporary("none.npy");
+    s.params.plane[PTIE_PLUS] = support_temporary("none.npy");
     assert_fails(run_with(&s, 1, &summary), PTIE_EIO, "none.npy");
 
     for (int i = 0; i < PIXELS; i++) bad[10][i] = 1;
     bad[10][777] = NAN;
     write_recording(support_temporary("nan.npy"), bad, FRAMES);
     init(&s);
-    s.params.minus = support_temporary("nan.npy");
+    s.params.plane[PTIE_MINUS] = support_temporary("nan.npy");
     assert_fails(run_with(&s, 1, &summary), PTIE_ENUMERIC, "");
     assert_true(nothing_left(&s));
 }

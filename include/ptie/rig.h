@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Rigs: how a set-up is built, written down once.  Which light, which planes, where they lie on the sensor, what
+ * the camera does to them, how they are solved.  A rig is an INI file; docs/formats.md has its keys.
+ *
+ * Lengths are in m at the object, angles in rad, shifts in pixels of the recording.
+ */
+#ifndef PTIE_RIG_H
+#define PTIE_RIG_H
+
+#include <ptie/metrics.h>
+#include <ptie/solver.h>
+
+/* The planes a set-up may record, by their distance from focus: I+, I-, I0, and the outer pair. */
+typedef enum ptie_role { PTIE_PLUS, PTIE_MINUS, PTIE_ZERO, PTIE_PLUS2, PTIE_MINUS2, PTIE_ROLES } ptie_role;
+
+/* How the planes of a moment come to the file.  All but the first are one sensor image with several channels. */
+typedef enum ptie_layout {
+    PTIE_LAYOUT_SEPARATE = 0,     /* a recording, or a data set of an HDF5 recording, per plane */
+    PTIE_LAYOUT_MOSAIC = 1,       /* 2 x 2 polarisers on the pixels; channels row-major */
+    PTIE_LAYOUT_SIDE_BY_SIDE = 2, /* channels left, right */
+    PTIE_LAYOUT_TOP_BOTTOM = 3,   /* channels top, bottom */
+    PTIE_LAYOUT_QUADRANTS = 4     /* channels top left, top right, bottom left, bottom right */
+} ptie_layout;
+
+enum { PTIE_CHANNELS = 4 }; /* most channels of a sensor image */
+
+/* How a mosaic's channels come to one grid.  Each has a quarter of the pixels, at twice the pitch. */
+typedef enum ptie_demosaic {
+    PTIE_DEMOSAIC_NONE = 0, /* as recorded: half a sensor pixel between channels */
+    PTIE_DEMOSAIC_BILINEAR = 1,
+    PTIE_DEMOSAIC_FOURIER = 2
+} ptie_demosaic;
+
+/* What is taken off the phase outside the flow. */
+typedef enum ptie_background {
+    PTIE_BACKGROUND_NONE = 0,
+    PTIE_BACKGROUND_PLANE = 1,
+    PTIE_BACKGROUND_ZERNIKE = 2 /* low orders */
+} ptie_background;
+
+typedef struct ptie_plane {
+    bool used;
+    double defocus_m;           /* z, |z| <= 1e3 */
+    char source[512];           /* SEPARATE: data set of an HDF5 recording ("/entry/data/plus"), or "" */
+    double mix[PTIE_CHANNELS];  /* other layouts: plane = sum of mix[c] * channel c */
+    double gain;                /* multiplies the plane, default 1 */
+    /* Where the plane lies on the grid of I+: a point at r from the frame's centre there is found at
+       shift + magnification * rotation(r) from the centre here.  Defaults 0, 0, 1, 0. */
+    double shift_x_px, shift_y_px, magnification, rotation_rad;
+} ptie_plane;
+
+typedef struct ptie_rig {
+    uint32_t struct_size; /* set by ptie_rig_init */
+
+    double wavelength_m;  /* default 532e-9 */
+    double pixel_m;       /* at the object: sensor pitch / magnification */
+    ptie_plane plane[PTIE_ROLES]; /* default: I+ and I- at +-10 mm */
+    bool one_plane;       /* I+ alone, against its own no-flow reference, which then stands for I0 */
+
+    ptie_layout layout;
+    int32_t angle_deg[PTIE_CHANNELS]; /* MOSAIC: polarisers of the sensor's top left cell, row-major */
+    int32_t roi_x, roi_y;     /* MOSAIC: where the recorded region begins on the sensor; only odd or even counts */
+    ptie_demosaic demosaic;   /* default BILINEAR */
+
+    /* Recordings; paths relative to the rig file, "" for none.  Their frames are averaged. */
+    char reference[512]; /* no flow, as the recording in size and layout */
+    char dark[512];      /* no light */
+    char mask[512];      /* image of a plane's size: 0 = opaque */
+    bool flat_field;     /* divide each plane by its own reference, where there is one; default true */
+    bool match_gain;     /* scale planes to equal means over the light, default true */
+    double mask_below;   /* opaque where the planes' mean is below this share of its median; 0 = nowhere */
+    ptie_background background;
+    int64_t still_first, still_end; /* frames without flow, end excluded: their median phase is taken off */
+
+    /* The camera, where it is known: 0 else. */
+    double saturation_counts;   /* largest value the sensor gives */
+    double electrons_per_count;
+    double read_noise_electrons;
+
+    ptie_boundary boundary; /* default PTIE_MIRROR */
+    double cutoff_m;        /* Tikhonov cut-off period of the solver, 0 = off */
+    int32_t binning;        /* average n x n pixels before solving, default 1 */
+    bool zero_border;       /* pin the mean: median of the frame's border = 0, default true */
+
+    int32_t polarity;      /* sign of the flow's phase: +1, -1 (hot gas), 0 = judge each frame */
+    ptie_rect still;       /* region without flow, pixels of the phase: its mean is 0; empty: none */
+    double frame_rate_hz;  /* 0: as the recording says */
+} ptie_rig;
+
+PTIE_API void ptie_rig_init(ptie_rig *rig);
+
+/* Reads an INI file.  Errors: PTIE_EIO, PTIE_ENAME (unknown section, key or channel, with the nearest valid
+   one), PTIE_EFORMAT (line, value, expected unit), PTIE_EINVAL (missing wavelength, pixel, defocus or plane;
+   planes at one distance). */
+PTIE_API PTIE_NODISCARD ptie_status ptie_rig_load(ptie_rig *rig, const char *path);
+
+#endif
