@@ -7,16 +7,16 @@
 #include "base/memory.h"
 #include "io/recording.h"
 #include "nn/nn.h"
+#include "run/stages.h"
 
-/* Frames go through the network in parallel, a block at a time, as many as there are workers. */
 typedef struct denoising {
     const ptie_denoise_params *params;
     ptie_recording *input;
     ptie_writer *output;
     ptie_denoiser *denoiser;
     int64_t frames;
-    size_t pixels, block, scratch_bytes;
-    float *maps;            /* (block, H, W) */
+    size_t pixels, slots, scratch_bytes;
+    float *maps;            /* (slots, H, W) */
     unsigned char *scratch; /* one part per worker */
 } denoising;
 
@@ -28,36 +28,46 @@ static ptie_status prepare(denoising *d, const ptie_engine *engine) {
     d->frames = info.frames;
     d->pixels = (size_t)info.width_px * (size_t)info.height_px;
     const ptie_denoiser_params how = {.fast = p->fast, .all_threads = d->frames == 1};
-    d->block = how.all_threads ? 1 : (size_t)ptie_pool_threads(engine->pool);
+    const size_t workers = how.all_threads ? 1 : (size_t)ptie_pool_threads(engine->pool);
+    d->slots = ptie_stages_slots(engine->pool, d->frames);
     PTIE_TRY(ptie_nn_denoiser(&d->denoiser, engine, p->model, info.width_px, info.height_px,
                               &how));
     d->scratch_bytes = ptie_nn_denoiser_scratch(d->denoiser);
-    PTIE_TRY(ptie_alloc_status(&d->maps, d->block, d->pixels * sizeof(float), "block of frames"));
-    PTIE_TRY(ptie_alloc_status(&d->scratch, d->block, d->scratch_bytes, "scratch of the network"));
+    PTIE_TRY(ptie_alloc_status(&d->maps, d->slots, d->pixels * sizeof(float), "frames"));
+    PTIE_TRY(ptie_alloc_status(&d->scratch, workers, d->scratch_bytes, "scratch of the network"));
     snprintf(info.unit, sizeof info.unit, "rad");
     return ptie_io_create(&d->output, p->output, "denoised", &info, p->overwrite);
 }
 
-static ptie_status denoise_task(void *context, size_t i, int32_t worker) {
+static ptie_status read_frame(void *context, int64_t frame, size_t slot) {
     denoising *d = context;
-    float *map = d->maps + i * d->pixels;
+    return ptie_io_read(d->input, frame, d->maps + slot * d->pixels);
+}
+
+static ptie_status denoise_frame(void *context, int64_t frame, size_t slot, int32_t worker) {
+    (void)frame;
+    denoising *d = context;
+    float *map = d->maps + slot * d->pixels;
     return ptie_nn_denoise_rad(d->denoiser, map, map, d->params->polarity,
                                d->scratch + (size_t)worker * d->scratch_bytes);
 }
 
+static ptie_status write_frame(void *context, int64_t frame, size_t slot) {
+    (void)frame;
+    denoising *d = context;
+    return ptie_io_append(d->output, d->maps + slot * d->pixels);
+}
+
 static ptie_status denoise_frames(denoising *d, ptie_pool *pool, ptie_progress progress) {
-    for (int64_t first = 0; first < d->frames;) {
-        size_t count =
-            d->block < (size_t)(d->frames - first) ? d->block : (size_t)(d->frames - first);
-        for (size_t i = 0; i < count; i++)
-            PTIE_TRY(ptie_io_read(d->input, first + (int64_t)i, d->maps + i * d->pixels));
-        PTIE_TRY(d->frames == 1 ? denoise_task(d, 0, 0) /* takes the pool itself */
-                                : ptie_pool_run(pool, count, denoise_task, d));
-        for (size_t i = 0; i < count; i++)
-            PTIE_TRY(ptie_io_append(d->output, d->maps + i * d->pixels));
-        first += (int64_t)count;
-        PTIE_TRY(ptie_progress_report(progress, (uint64_t)first, (uint64_t)d->frames, NULL));
-    }
+    PTIE_TRY(ptie_stages_run(&(ptie_stages){.read = read_frame,
+                                            .solve = denoise_frame,
+                                            .write = write_frame,
+                                            .context = d,
+                                            .end = d->frames,
+                                            .slots = d->slots,
+                                            .progress = progress,
+                                            .total = d->frames},
+                             pool));
     ptie_writer *output = d->output;
     d->output = NULL;
     return ptie_io_complete(output);
