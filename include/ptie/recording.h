@@ -19,11 +19,24 @@ typedef struct ptie_recording_info {
     char sample[16];     /* stored sample type: "u8", "u16", "f32", ... */
     char dataset[256];   /* path inside an HDF5 file, else "" */
     char unit[16];       /* "rad", "counts", ... or "" */
-    double frame_rate_hz;/* 0 if the file does not say */
+    double frame_rate_hz;/* of the frames in the file; 0 if it does not say */
     double pixel_m;      /* 0 if the file does not say */
     /* Frame t was frame first_frame + t * frame_step of the recording it was made from; 0 and 1 unless the file
        (HDF5) says so. */
     int64_t first_frame, frame_step;
+    /* What cameras write beside the frames; 0 or "" if the file does not say. */
+    char camera[64];     /* model, serial number */
+    char date[32];       /* as the file has it: "2017/7/13 13:13" */
+    char comment[128];
+    char trigger[48];    /* "start", "at frame 120" */
+    char warning[192];   /* what is wrong with a file that can be read all the same, such as cut short */
+    double exposure_s;
+    int32_t bit_depth;   /* effective: counts are 0 .. 2^bit_depth - 1 */
+    double black_level, white_level; /* counts of no light and of full scale */
+    int32_t roi_x_px, roi_y_px;      /* corner of the frame on the sensor; its parity is that of a mosaic */
+    int64_t recorded;    /* frames that the header announces */
+    int64_t skip;        /* of the frames exposed, every skip-th was kept; frame_rate_hz is that of the kept */
+    bool bottom_up;      /* stored with the bottom row first (frames are handed out top row first) */
 } ptie_recording_info;
 
 typedef struct ptie_recording ptie_recording;

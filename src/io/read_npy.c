@@ -8,19 +8,16 @@
 #include "io/endian.h"
 #include "io/input.h"
 #include "io/reader.h"
-#include "io/sample.h"
+#include "io/raster.h"
 
 #define MAGIC "\x93NUMPY"
 #define HEADER_LIMIT 65536 /* bytes; NumPy itself writes 118 */
-#define BLOCK 4096         /* samples converted at a time */
 
 typedef struct npy {
     FILE *stream;
     char *path;
     uint64_t start; /* of the data in the file */
-    size_t frame_samples;
-    ptie_sample sample;
-    bool swapped; /* other byte order than this machine's */
+    ptie_raster raster;
 } npy;
 
 static bool npy_probe(const unsigned char *head) {
@@ -51,12 +48,12 @@ static ptie_status parse_type(npy *file, const char *header) {
     /* A quote, byte order, kind, size, and the quote again: '<f4' */
     bool simple =
         strlen(text) > 4 && strchr("'\"", text[0]) && strchr("<>|", text[1]) && text[4] == text[0];
-    if (simple) file->sample = (ptie_sample){text[2], (size_t)(text[3] - '0')};
-    if (!ptie_sample_known(file->sample))
+    if (simple) file->raster.sample = (ptie_sample){text[2], (size_t)(text[3] - '0')};
+    if (!ptie_sample_known(file->raster.sample))
         return PTIE_FAIL(PTIE_EUNSUPPORTED,
                          "%s: sample type not read (expected integers or f4, f8, found %.*s)",
                          file->path, (int)strcspn(text, ","), text);
-    file->swapped = file->sample.bytes > 1 && (text[1] == '<') != ptie_machine_is_little();
+    file->raster.swapped = file->raster.sample.bytes > 1 && (text[1] == '<') != ptie_machine_is_little();
     return PTIE_OK;
 }
 
@@ -97,8 +94,9 @@ static ptie_status parse_header(npy *file, ptie_recording_info *info, const char
         return PTIE_FAIL(PTIE_EFORMAT, "%s: array has no valid number of frames (found %llu)",
                          file->path, (unsigned long long)frames);
     info->frames = (int64_t)frames;
-    ptie_sample_name(info->sample, file->sample);
-    file->frame_samples = (size_t)info->width_px * (size_t)info->height_px;
+    ptie_sample_name(info->sample, file->raster.sample);
+    file->raster.width = info->width_px;
+    file->raster.height = info->height_px;
     return PTIE_OK;
 }
 
@@ -134,7 +132,7 @@ static ptie_status npy_load(npy *file, ptie_recording_info *info, const char *pa
     if (status == PTIE_OK) status = parse_header(file, info, header);
     ptie_free(header);
     PTIE_TRY(status);
-    uint64_t frame_bytes = file->frame_samples * file->sample.bytes; /* below 2^33 */
+    uint64_t frame_bytes = ptie_raster_bytes(&file->raster);
     uint64_t frames_there = (file_bytes - file->start) / frame_bytes;
     if ((uint64_t)info->frames > frames_there)
         return PTIE_FAIL(PTIE_EFORMAT,
@@ -160,20 +158,9 @@ static ptie_status npy_open(void **state, ptie_recording_info *info, const char 
 }
 
 static ptie_status npy_read(void *state, int64_t frame, float *data) {
-    npy *file = state;
-    unsigned char block[BLOCK * PTIE_SAMPLE_BYTES];
-    uint64_t at = file->start + (uint64_t)frame * file->frame_samples * file->sample.bytes;
-    if (fseeko(file->stream, (off_t)at, SEEK_SET) != 0)
-        return PTIE_FAIL(PTIE_EIO, "%s: cannot seek: %s", file->path, strerror(errno));
-    for (size_t done = 0; done < file->frame_samples;) {
-        size_t now = file->frame_samples - done < BLOCK ? file->frame_samples - done : BLOCK;
-        if (fread(block, file->sample.bytes, now, file->stream) != now)
-            return PTIE_FAIL(PTIE_EIO, "%s: cannot read frame %lld", file->path, (long long)frame);
-        if (file->swapped) ptie_sample_swap(block, now, file->sample);
-        ptie_sample_convert(data + done, block, now, file->sample);
-        done += now;
-    }
-    return PTIE_OK;
+    const npy *file = state;
+    const uint64_t at = file->start + (uint64_t)frame * ptie_raster_bytes(&file->raster);
+    return ptie_raster_read(&file->raster, file->stream, at, data, file->path, frame);
 }
 
 const ptie_reader ptie_read_npy = {

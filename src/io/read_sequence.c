@@ -26,7 +26,7 @@ static bool is_folder(const char *path) {
     return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
 }
 
-bool ptie_is_sequence(const char *path) {
+static bool sequence_claims(const char *path) {
     struct stat info;
     ptie_pattern pattern;
     return is_folder(path) || (stat(path, &info) != 0 && ptie_pattern_find(&pattern, path));
@@ -202,4 +202,8 @@ static ptie_status sequence_read(void *state, int64_t frame, float *data) {
 }
 
 const ptie_reader ptie_read_sequence = {
-    .name = "sequence", .open = sequence_open, .read = sequence_read, .close = sequence_close};
+    .name = "sequence",
+    .claims = sequence_claims,
+    .open = sequence_open,
+    .read = sequence_read,
+    .close = sequence_close};

@@ -14,8 +14,10 @@
 
 typedef struct ptie_reader {
     const char *name; /* "PNG" */
-    /* Is it this format?  head: the file's first PTIE_HEAD_BYTES bytes, zeros behind its end. */
+    /* Is it this format?  One of the two, the other is NULL.  probe: by the file's first PTIE_HEAD_BYTES bytes, zeros
+       behind its end.  claims: by the path, for what has no beginning of its own; asked first. */
     bool (*probe)(const unsigned char *head);
+    bool (*claims)(const char *path);
     /* Opens the file and fills `info` (zeroed; `format` is done already).  `inside` names a data
        set in the file, or is "".  On failure *state is NULL. */
     ptie_status (*open)(void **state, ptie_recording_info *info, const char *path,
@@ -26,12 +28,8 @@ typedef struct ptie_reader {
     bool has_data_sets;         /* `inside` may be other than "" */
 } ptie_reader;
 
-extern const ptie_reader ptie_read_npy, ptie_read_png, ptie_read_tiff, ptie_read_h5;
-/* Has no probe: numbered files, chosen by the path. */
-extern const ptie_reader ptie_read_sequence;
-
-/* Is `path` a folder, or a pattern ("flow_%02d.png")? */
-bool ptie_is_sequence(const char *path);
+extern const ptie_reader ptie_read_sequence, ptie_read_mraw, ptie_read_npy, ptie_read_png,
+    ptie_read_tiff, ptie_read_h5;
 
 /* Stores a frame size that was read from a file: 1 .. PTIE_LONGEST_SIDE px each. */
 ptie_status ptie_info_set_size(ptie_recording_info *info, const char *path, uint64_t width,

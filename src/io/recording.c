@@ -53,26 +53,35 @@ static const char *split_path(char *path) {
     return "";
 }
 
+/* Is it this reader's?  head: NULL while only those are asked that go by the path. */
+static bool is_kind(const ptie_reader *reader, const char *path, const unsigned char *head) {
+    return head ? reader->probe && reader->probe(head) : reader->claims && reader->claims(path);
+}
+
+/* NULL if there is none. */
+static const ptie_reader *choose(const char *path, const unsigned char *head) {
+    static const ptie_reader *const readers[] = {&ptie_read_sequence, &ptie_read_mraw,
+                                                 &ptie_read_npy,      &ptie_read_png,
+                                                 &ptie_read_tiff,     &ptie_read_h5};
+    for (size_t i = 0; i < sizeof readers / sizeof *readers; i++)
+        if (is_kind(readers[i], path, head)) return readers[i];
+    return NULL;
+}
+
 static ptie_status find_reader(const ptie_reader **out, const char *path, const char *inside) {
-    static const ptie_reader *const readers[] = {&ptie_read_npy, &ptie_read_png, &ptie_read_tiff,
-                                                 &ptie_read_h5};
     unsigned char head[PTIE_HEAD_BYTES];
-    if (ptie_is_sequence(path) && !*inside) {
-        *out = &ptie_read_sequence;
-        return PTIE_OK;
+    const ptie_reader *reader = choose(path, NULL);
+    if (!reader) {
+        PTIE_TRY(ptie_input_head(path, head, sizeof head));
+        reader = choose(path, head);
     }
-    PTIE_TRY(ptie_input_head(path, head, sizeof head));
-    for (size_t i = 0; i < sizeof readers / sizeof *readers; i++) {
-        if (!readers[i]->probe(head)) continue;
-        if (*inside && !readers[i]->has_data_sets)
-            return PTIE_FAIL(PTIE_EFORMAT,
-                             "%s: %s files have no data sets (expected no ':', found ':%s')", path,
-                             readers[i]->name, inside);
-        *out = readers[i];
-        return PTIE_OK;
-    }
-    return PTIE_FAIL(PTIE_EFORMAT, "%s: unknown kind of file (expected NPY, PNG, TIFF or HDF5)",
-                     path);
+    if (!reader)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: unknown kind of file (expected MRAW, CINE, NPY, PNG, TIFF, HDF5, MAT or raw)", path);
+    if (*inside && !reader->has_data_sets)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: %s files have no data sets (expected no ':', found ':%s')",
+                         path, reader->name, inside);
+    *out = reader;
+    return PTIE_OK;
 }
 
 static ptie_status open_reader(ptie_recording *recording, char *file) {

@@ -23,10 +23,10 @@ A file that is not there
 A file of another kind
   $ echo 'not a recording' > text.tif
   $ ptie info text.tif
-  ! ptie: text.tif: unknown kind of file (expected NPY, PNG, TIFF or HDF5)
+  ! ptie: text.tif: unknown kind of file (expected MRAW, CINE, NPY, PNG, TIFF, HDF5, MAT or raw)
   [1]
   $ ptie info $TESTS/run
-  ! ptie: */tests/cli/run: unknown kind of file (expected NPY, PNG, TIFF or HDF5) (glob)
+  ! ptie: */tests/cli/run: unknown kind of file (expected MRAW, CINE, NPY, PNG, TIFF, HDF5, MAT or raw) (glob)
   [1]
   $ cp text.tif m.safetensors; ptie info m.safetensors
   ! ptie: m.safetensors: not a safetensors file, or cut (expected a header within 16 bytes, found 7309940746704154478)

@@ -149,7 +149,7 @@ static void what_cannot_be_read_is_named(void **state) {
         {"several.h5", ":/none", PTIE_EFORMAT, "/none"},
         {"only.h5", ":/names", PTIE_EUNSUPPORTED, "/names has 0 dimensions"},
         {"u1.npy", ":/plus", PTIE_EFORMAT, "NPY files have no data sets"},
-        {"../make_images.py", "", PTIE_EFORMAT, "expected NPY, PNG, TIFF or HDF5"},
+        {"../make_images.py", "", PTIE_EFORMAT, "NPY, PNG, TIFF, HDF5"},
         {"none.png", "", PTIE_EIO, "No such file"},
         {"none_%d.png", "", PTIE_EIO, "no frames"},
         {"none_/%d.png", "", PTIE_EIO, "none_/: cannot read the folder: No such file"},
