@@ -20,6 +20,12 @@ void ptie_set_message(const char *message) {
     snprintf(message_buffer, sizeof message_buffer, "%s", message);
 }
 
+/* Words from files may hold anything: a message stays one line, and does not steer a terminal. */
+static void make_printable(char *line) {
+    for (; *line; line++)
+        if ((unsigned char)*line < ' ' || *line == 127) *line = '?';
+}
+
 ptie_status ptie_fail(ptie_status status, const char *format, ...) {
     /* Arguments may point into the old message, so the new one is built aside. */
     char line[PTIE_MESSAGE_BYTES];
@@ -27,6 +33,7 @@ ptie_status ptie_fail(ptie_status status, const char *format, ...) {
     va_start(arguments, format);
     ptie_vprint(line, sizeof line, format, arguments);
     va_end(arguments);
+    make_printable(line);
     memcpy(message_buffer, line, sizeof line);
     return status;
 }

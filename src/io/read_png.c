@@ -12,6 +12,8 @@
 
 /* One byte of DEFLATE stands for at most 1032. */
 #define DENSEST 1032
+#define CHUNK_LIMIT (8 << 20)             /* bytes */
+#define MEMORY_LIMIT ((size_t)2 * CHUNK_LIMIT) /* of one block of libpng's: a chunk, a row of pixels, zlib's tables */
 
 typedef struct grey_png {
     char *path;
@@ -47,6 +49,17 @@ static void on_warning(png_structp png, png_const_charp message) {
     (void)png, (void)message;
 }
 
+/* libpng takes a chunk's word for its size, and only warns when that is above the limit set below. */
+static png_voidp allocate(png_structp png, png_alloc_size_t bytes) {
+    (void)png;
+    return bytes <= MEMORY_LIMIT ? ptie_alloc(bytes, 1) : NULL;
+}
+
+static void release(png_structp png, png_voidp memory) {
+    (void)png;
+    ptie_free(memory);
+}
+
 static void decoder_stop(decoder *d) {
     png_destroy_read_struct(&d->png, &d->info, NULL);
     if (d->stream) fclose(d->stream);
@@ -64,7 +77,7 @@ static ptie_status guarded(decoder *d, void (*step)(decoder *)) {
 
 static void read_info(decoder *d) {
     png_set_user_limits(d->png, PTIE_LONGEST_SIDE, PTIE_LONGEST_SIDE);
-    png_set_chunk_malloc_max(d->png, 8 << 20);
+    png_set_chunk_malloc_max(d->png, CHUNK_LIMIT);
     png_init_io(d->png, d->stream);
     png_read_info(d->png, d->info);
 }
@@ -95,7 +108,7 @@ static void read_pixels(decoder *d) {
 static ptie_status decoder_start(decoder *d, const char *path) {
     *d = (decoder){.path = path};
     PTIE_TRY(ptie_input_open(&d->stream, path, &d->file_bytes));
-    d->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, d, on_error, on_warning);
+    d->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, d, on_error, on_warning, NULL, allocate, release);
     if (d->png) d->info = png_create_info_struct(d->png);
     if (!d->info) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
     return guarded(d, read_info);
