@@ -57,15 +57,25 @@ static void set_initial_values(ptie_model *model) {
     draw_weights(model, graph->head);
 }
 
-ptie_status ptie_nn_create(ptie_model **out, const ptie_model_params *params) {
+ptie_status ptie_model_outline(ptie_model **out, const ptie_model_params *params) {
     ptie_model *model;
-    *out = NULL;
     PTIE_TRY(ptie_alloc_status(&model, 1, sizeof *model, "model"));
     model->params = *params;
     ptie_graph_build(&model->graph, params);
     ptie_model_describe(model);
-    ptie_status status =
-        ptie_alloc_status(&model->values, model->graph.values, sizeof(float), "model");
+    *out = model;
+    return PTIE_OK;
+}
+
+ptie_status ptie_model_allocate(ptie_model *model) {
+    return ptie_alloc_status(&model->values, model->graph.values, sizeof(float), "model");
+}
+
+ptie_status ptie_nn_create(ptie_model **out, const ptie_model_params *params) {
+    ptie_model *model;
+    *out = NULL;
+    PTIE_TRY(ptie_model_outline(&model, params));
+    ptie_status status = ptie_model_allocate(model);
     if (status != PTIE_OK) {
         ptie_nn_free(model);
         return status;

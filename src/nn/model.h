@@ -24,6 +24,10 @@ struct ptie_model {
     size_t note_count;
 };
 
+/* A model without values, and room for them (zeroed): a file is compared with the one before it gets the other. */
+ptie_status ptie_model_outline(ptie_model **out, const ptie_model_params *params);
+ptie_status ptie_model_allocate(ptie_model *model);
+
 /* Parameter `which` (PTIE_WEIGHT, ...) of the layer or head whose first one is `params`. */
 static inline float *ptie_model_values(const ptie_model *model, int32_t params, int32_t which) {
     return model->values + model->graph.params[params + which].offset;

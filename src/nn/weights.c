@@ -8,6 +8,8 @@
 #include "base/text.h"
 #include "nn/model.h"
 
+#define MOST_NOTES 1024 /* in a file; ptie writes a handful */
+
 ptie_status ptie_nn_tensors(const ptie_model *model, ptie_tensor_view **tensors,
                             size_t *tensor_count, ptie_note **notes, size_t *note_count) {
     const ptie_graph *graph = &model->graph;
@@ -142,21 +144,35 @@ static ptie_status check_values(const float *values, const ptie_param *param, co
     return PTIE_OK;
 }
 
-static ptie_status read_tensors(ptie_model *model, const ptie_safetensors *file,
+/* The file holds what the model needs, so that it may be allocated. */
+static ptie_status check_shapes(const ptie_model *model, const ptie_safetensors *file,
                                 const char *where) {
     for (int32_t i = 0; i < model->graph.param_count; i++) {
         const ptie_param *param = &model->graph.params[i];
+        PTIE_TRY(check_shape(ptie_safetensors_find(file, param->name), param, model, where));
+    }
+    return PTIE_OK;
+}
+
+static ptie_status read_tensors(ptie_model *model, const ptie_safetensors *file,
+                                const char *where) {
+    PTIE_TRY(check_shapes(model, file, where));
+    PTIE_TRY(ptie_model_allocate(model));
+    for (int32_t i = 0; i < model->graph.param_count; i++) {
+        const ptie_param *param = &model->graph.params[i];
         const ptie_tensor_view *tensor = ptie_safetensors_find(file, param->name);
-        PTIE_TRY(check_shape(tensor, param, model, where));
         PTIE_TRY(check_values(tensor->data, param, where));
         memcpy(model->values + param->offset, tensor->data, param->count * sizeof(float));
     }
     return PTIE_OK;
 }
 
-static ptie_status read_notes(ptie_model *model, const ptie_safetensors *file) {
+static ptie_status read_notes(ptie_model *model, const ptie_safetensors *file, const char *where) {
     const ptie_note *notes;
     size_t count = ptie_safetensors_notes(file, &notes);
+    if (count > MOST_NOTES)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: too many notes (expected at most %d, found %zu)", where,
+                         MOST_NOTES, count);
     for (size_t i = 0; i < count; i++)
         if (!ptie_model_fact(model, notes[i].key))
             PTIE_TRY(ptie_nn_set_note(model, notes[i].key, notes[i].value));
@@ -169,9 +185,9 @@ ptie_status ptie_nn_from_safetensors(ptie_model **out, const ptie_safetensors *f
     ptie_model *model;
     *out = NULL;
     PTIE_TRY(read_facts(&params, file, where));
-    PTIE_TRY(ptie_nn_create(&model, &params));
+    PTIE_TRY(ptie_model_outline(&model, &params));
     ptie_status status = read_tensors(model, file, where);
-    if (status == PTIE_OK) status = read_notes(model, file);
+    if (status == PTIE_OK) status = read_notes(model, file, where);
     if (status == PTIE_OK)
         *out = model;
     else

@@ -94,10 +94,12 @@ static bool parse_row(const char **text, ptie_epoch *epoch) {
     return *(*text)++ == '\n';
 }
 
-static size_t count_lines(const char *text) {
-    size_t lines = 0;
-    for (; *text; text++) lines += *text == '\n';
-    return lines;
+/* An upper bound: lines, and no more than there is text for, each number having a digit and a comma. */
+static size_t count_rows(const char *text) {
+    size_t lines = 0, length = 0;
+    for (; text[length]; length++) lines += text[length] == '\n';
+    const size_t most = length / (2 * (COLUMNS + 1)) + 1;
+    return lines < most ? lines : most;
 }
 
 ptie_status ptie_history_parse(ptie_epoch **epochs, size_t *count, const char *csv,
@@ -106,19 +108,20 @@ ptie_status ptie_history_parse(ptie_epoch **epochs, size_t *count, const char *c
     *count = 0;
     ptie_text header = {0};
     ptie_history_print(&header, NULL, 0);
-    const size_t length = header.length, lines = count_lines(csv);
-    const bool known = !header.failed && strncmp(csv, header.data, length) == 0;
+    const size_t length = header.length;
+    const bool printed = !header.failed, known = printed && strncmp(csv, header.data, length) == 0;
     ptie_text_free(&header);
+    if (!printed) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", where);
     if (!known)
         return PTIE_FAIL(PTIE_EFORMAT, "%s:1: not a training history (unknown columns)", where);
 
-    ptie_epoch *rows =
-        calloc(lines, sizeof *rows); /* the header's line makes room for a last half row */
-    if (!rows) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", where);
     const char *text = csv + length;
+    const size_t most = count_rows(text) + 1; /* one more for a last half row */
+    ptie_epoch *rows = calloc(most, sizeof *rows);
+    if (!rows) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", where);
     size_t n = 0;
     for (; *text; n++)
-        if (!parse_row(&text, &rows[n]) || rows[n].epoch != (int32_t)n + 1) {
+        if (n == most || !parse_row(&text, &rows[n]) || rows[n].epoch != (int32_t)n + 1) {
             free(rows);
             return PTIE_FAIL(PTIE_EFORMAT,
                              "%s:%zu: damaged row (expected epoch %zu and %d numbers)", where,
