@@ -5,11 +5,12 @@
 #   make test     every test; the last line counts them
 #   make levels   the tests again with every kernel level of this machine forced
 #   make sanitize the tests again under ASan + UBSan, then TSan (longer)
+#   make fuzz     every reader against damaged files, one minute each (clang); see tools/fuzz
 
 BUILD ?= build
 MESON_FLAGS ?=
 
-.PHONY: all demo test levels sanitize clean
+.PHONY: all demo test levels sanitize fuzz clean
 all: $(BUILD)/build.ninja
 	@ninja -C $(BUILD)
 
@@ -36,5 +37,8 @@ levels: test-dependencies all
 sanitize: test-dependencies
 	@tools/sanitize
 
+fuzz: dependencies
+	@tools/fuzz
+
 clean:
-	@rm -rf $(BUILD) build-asan build-tsan out
+	@rm -rf $(BUILD) build-asan build-tsan build-fuzz out

@@ -190,19 +190,6 @@ static void npy_headers_that_lie(void **state) {
     assert_fails(read_all(path), PTIE_EFORMAT, "header too long");
 }
 
-static uint32_t crc32_of(const unsigned char *data, size_t bytes) {
-    uint32_t crc = ~0u;
-    for (size_t i = 0; i < bytes; i++) {
-        crc ^= data[i];
-        for (int bit = 0; bit < 8; bit++) crc = crc >> 1 ^ (0xedb88320u & (0u - (crc & 1u)));
-    }
-    return ~crc;
-}
-
-static void put_be32(unsigned char *bytes, uint32_t value) {
-    for (int i = 0; i < 4; i++) bytes[i] = (unsigned char)(value >> (24 - 8 * i));
-}
-
 /* A valid header chunk of another size before the same pixels. */
 static void png_headers_that_lie(void **state) {
     (void)state;
@@ -223,9 +210,9 @@ static void png_headers_that_lie(void **state) {
     unsigned char *data = support_read(golden_image("grey8.png"), &bytes);
     const char *path = support_temporary("lie.png");
     for (size_t i = 0; i < sizeof lies / sizeof *lies; i++) {
-        put_be32(data + 16, lies[i].width);
-        put_be32(data + 20, lies[i].height);
-        put_be32(data + 29, crc32_of(data + 12, 17));
+        support_put_be32(data + 16, lies[i].width);
+        support_put_be32(data + 20, lies[i].height);
+        support_put_be32(data + 29, support_crc32(data + 12, 17));
         support_write(path, data, bytes);
         if (lies[i].status == PTIE_OK)
             assert_ok(read_all(path));

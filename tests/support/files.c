@@ -57,6 +57,19 @@ void support_check_truncations(const char *path, support_file_fn read, size_t pa
     free(data);
 }
 
+uint32_t support_crc32(const unsigned char *data, size_t bytes) {
+    uint32_t crc = ~0u;
+    for (size_t i = 0; i < bytes; i++) {
+        crc ^= data[i];
+        for (int bit = 0; bit < 8; bit++) crc = crc >> 1 ^ (0xedb88320u & (0u - (crc & 1u)));
+    }
+    return ~crc;
+}
+
+void support_put_be32(unsigned char *bytes, uint32_t value) {
+    for (int i = 0; i < 4; i++) bytes[i] = (unsigned char)(value >> (24 - 8 * i));
+}
+
 void support_python(const char *program, const char *path) {
     if (access("/usr/bin/python3", X_OK) != 0) {
         print_message("# no /usr/bin/python3\n");

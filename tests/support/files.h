@@ -19,6 +19,10 @@ void support_check_full_disk(const char *path, support_file_fn write);
  */
 void support_check_truncations(const char *path, support_file_fn read, size_t padding);
 
+/* The check sum of PNG and zlib, and its byte order there. */
+uint32_t support_crc32(const unsigned char *data, size_t bytes);
+void support_put_be32(unsigned char *bytes, uint32_t value);
+
 /* Runs a Python program with `path` as its argument; skips the test where there is no Python. */
 void support_python(const char *program, const char *path);
 

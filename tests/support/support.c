@@ -51,7 +51,7 @@ double support_relative_error(const float *a, const float *b, size_t count) {
     return sqrt(difference / norm);
 }
 
-static char folder[64];
+static char folder[256];
 
 static int remove_entry(const char *path, const struct stat *info, int type, struct FTW *walk) {
     (void)info, (void)type, (void)walk;
@@ -72,7 +72,8 @@ static const char *joined(const char *base, const char *name) {
 
 const char *support_temporary(const char *name) {
     if (!folder[0]) {
-        snprintf(folder, sizeof folder, "/tmp/ptie-test-XXXXXX");
+        const char *base = getenv("TMPDIR");
+        snprintf(folder, sizeof folder, "%.200s/ptie-test-XXXXXX", base ? base : "/tmp");
         assert_non_null(mkdtemp(folder));
         atexit(remove_folder);
     }
