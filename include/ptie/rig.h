@@ -7,29 +7,11 @@
 #ifndef PTIE_RIG_H
 #define PTIE_RIG_H
 
-#include <ptie/metrics.h>
+#include <ptie/preprocess.h>
 #include <ptie/solver.h>
 
 /* The planes a set-up may record, by their distance from focus: I+, I-, I0, and the outer pair. */
 typedef enum ptie_role { PTIE_PLUS, PTIE_MINUS, PTIE_ZERO, PTIE_PLUS2, PTIE_MINUS2, PTIE_ROLES } ptie_role;
-
-/* How the planes of a moment come to the file.  All but the first are one sensor image with several channels. */
-typedef enum ptie_layout {
-    PTIE_LAYOUT_SEPARATE = 0,     /* a recording, or a data set of an HDF5 recording, per plane */
-    PTIE_LAYOUT_MOSAIC = 1,       /* 2 x 2 polarisers on the pixels; channels row-major */
-    PTIE_LAYOUT_SIDE_BY_SIDE = 2, /* channels left, right */
-    PTIE_LAYOUT_TOP_BOTTOM = 3,   /* channels top, bottom */
-    PTIE_LAYOUT_QUADRANTS = 4     /* channels top left, top right, bottom left, bottom right */
-} ptie_layout;
-
-enum { PTIE_CHANNELS = 4 }; /* most channels of a sensor image */
-
-/* How a mosaic's channels come to one grid.  Each has a quarter of the pixels, at twice the pitch. */
-typedef enum ptie_demosaic {
-    PTIE_DEMOSAIC_NONE = 0, /* as recorded: half a sensor pixel between channels */
-    PTIE_DEMOSAIC_BILINEAR = 1,
-    PTIE_DEMOSAIC_FOURIER = 2
-} ptie_demosaic;
 
 /* What is taken off the phase outside the flow. */
 typedef enum ptie_background {
