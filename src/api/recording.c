@@ -45,6 +45,20 @@ static ptie_status check_name(const char *name, const char *where) {
                      LONGEST_NAME, name);
 }
 
+static ptie_status check_text(const char *text, size_t bytes, const char *where, const char *name) {
+    if (memchr(text, 0, bytes)) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EINVAL, "%s: %s is not terminated (expected at most %zu bytes)", where,
+                     name, bytes - 1);
+}
+
+static ptie_status check_texts(const ptie_recording_info *info, const char *where) {
+    PTIE_TRY(check_text(info->unit, sizeof info->unit, where, "unit"));
+    PTIE_TRY(check_text(info->sample, sizeof info->sample, where, "sample"));
+    PTIE_TRY(check_text(info->camera, sizeof info->camera, where, "camera"));
+    PTIE_TRY(check_text(info->date, sizeof info->date, where, "date"));
+    return check_text(info->comment, sizeof info->comment, where, "comment");
+}
+
 static ptie_status check_info(const ptie_recording_info *info, const char *where) {
     PTIE_TRY(ptie_check_pointer(info, where, "info"));
     PTIE_TRY(ptie_check_integer(info->width_px, 1, 32768, where, "width_px"));
@@ -52,10 +66,12 @@ static ptie_status check_info(const ptie_recording_info *info, const char *where
     PTIE_TRY(ptie_check_integer(info->frames, 0, INT64_MAX, where, "frames"));
     PTIE_TRY(ptie_check_number(info->frame_rate_hz, 0, 1e15, where, "frame_rate_hz"));
     PTIE_TRY(ptie_check_number(info->pixel_m, 0, 1, where, "pixel_m"));
-    if (!memchr(info->unit, 0, sizeof info->unit))
-        return PTIE_FAIL(PTIE_EINVAL, "%s: unit is not terminated (expected at most %zu bytes)",
-                         where, sizeof info->unit - 1);
-    return PTIE_OK;
+    PTIE_TRY(ptie_check_number(info->exposure_s, 0, 1e6, where, "exposure_s"));
+    PTIE_TRY(ptie_check_integer(info->bit_depth, 0, 64, where, "bit_depth"));
+    PTIE_TRY(ptie_check_integer(info->roi_x_px, 0, 32768, where, "roi_x_px"));
+    PTIE_TRY(ptie_check_integer(info->roi_y_px, 0, 32768, where, "roi_y_px"));
+    PTIE_TRY(ptie_check_integer(info->skip, 0, INT32_MAX, where, "skip"));
+    return check_texts(info, where);
 }
 
 ptie_status ptie_writer_create(ptie_writer **out, const char *path, const char *name,

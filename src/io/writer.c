@@ -19,7 +19,8 @@ struct ptie_writer {
 
 static const ptie_writer_format *find_format(const char *path) {
     static const ptie_writer_format *const formats[] = {&ptie_write_npy, &ptie_write_png,
-                                                        &ptie_write_tiff, &ptie_write_h5};
+                                                        &ptie_write_tiff, &ptie_write_h5,
+                                                        &ptie_write_mraw};
     const char *dot = strrchr(path, '.');
     for (size_t i = 0; dot && i < sizeof formats / sizeof *formats; i++)
         for (const char *const *ending = formats[i]->endings; *ending; ending++)
@@ -41,7 +42,7 @@ ptie_status ptie_io_create(ptie_writer **out, const char *path, const char *name
     if (!format)
         return PTIE_FAIL(
             PTIE_EUNSUPPORTED,
-            "%s: cannot write this kind of file (expected .npy .tif .tiff .h5 .hdf5 or .png)",
+            "%s: cannot write this kind of file (expected .npy .tif .tiff .h5 .hdf5 .png or .mraw)",
             path);
     PTIE_TRY(ptie_alloc_status(&writer, 1, sizeof *writer, path));
     writer->format = format;

@@ -23,6 +23,6 @@ typedef struct ptie_writer_format {
     void (*discard)(void *state); /* leaves no file; frees */
 } ptie_writer_format;
 
-extern const ptie_writer_format ptie_write_npy, ptie_write_png, ptie_write_tiff, ptie_write_h5;
+extern const ptie_writer_format ptie_write_mraw, ptie_write_npy, ptie_write_png, ptie_write_tiff, ptie_write_h5;
 
 #endif
