@@ -26,6 +26,7 @@ int reconstruct_command(int argc, char **argv);
 int denoise_command(int argc, char **argv);
 int run_command(int argc, char **argv);
 int metrics_command(int argc, char **argv);
+int convert_command(int argc, char **argv);
 int info_command(int argc, char **argv);
 int bench_command(int argc, char **argv);
 

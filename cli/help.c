@@ -65,6 +65,8 @@ static void default_text(char *text, size_t bytes, const option *o) {
         break;
     }
     case OPTION_FLAG:
+    case OPTION_FRAMES:
+    case OPTION_RANGE:
     case OPTION_RECT: break;
     }
 }

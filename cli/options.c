@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "options.h"
 
+#include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,6 +96,51 @@ static int set_rect(const command_usage *u, const option *o, const char *text) {
     return GO_ON;
 }
 
+/* A number of 0 or more up to a colon or the end; nothing leaves *value.  Returns what follows, NULL if it is
+ * something else. */
+static const char *take_frame(const char *text, int64_t *value) {
+    if (*text < '0' || *text > '9') return text;
+    char *end;
+    errno = 0;
+    *value = strtoll(text, &end, 10);
+    return errno ? NULL : end;
+}
+
+static int set_frames(const command_usage *u, const option *o, const char *text) {
+    frame_range range = {.step = 1};
+    const char *at = take_frame(text, &range.first);
+    if (at && at > text && !*at && range.first < INT64_MAX) {
+        range.end = range.first + 1; /* one frame */
+    } else {
+        int64_t end = INT64_MAX;
+        at = at && *at == ':' ? take_frame(at + 1, &end) : NULL;
+        if (at && *at == ':') at = take_frame(at + 1, &range.step);
+        range.end = end == INT64_MAX ? 0 : end;
+        if (!at || *at || end <= range.first || range.step < 1) at = NULL;
+    }
+    if (!at) return wrong_value(u, o, "frames a:b:step, b not included, such as 0:100:2", text);
+    *(frame_range *)o->value = range;
+    return GO_ON;
+}
+
+int64_t frames_in(frame_range range) {
+    return range.end ? (range.end - range.first - 1) / range.step + 1 : 0;
+}
+
+static int set_range(const command_usage *u, const option *o, const char *text) {
+    char *middle, *end;
+    value_range range = {.low = strtod(text, &middle)};
+    if (middle > text && *middle == ':') {
+        range.high = strtod(middle + 1, &end);
+        if (end > middle + 1 && !*end && isfinite(range.low) && isfinite(range.high) &&
+            range.low < range.high) {
+            *(value_range *)o->value = range;
+            return GO_ON;
+        }
+    }
+    return wrong_value(u, o, "values low:high, such as -0.5:2", text);
+}
+
 static int set_list(const command_usage *u, const option *o, const char *text) {
     number_list list;
     list.count = parse_numbers(text, ',', list.value, LONGEST_LIST);
@@ -115,6 +162,8 @@ static int set_value(const command_usage *u, operand_list *operands, const optio
     case OPTION_CHOICE: return set_choice(u, o, text);
     case OPTION_SIZE: return set_size(u, o, text);
     case OPTION_RECT: return set_rect(u, o, text);
+    case OPTION_FRAMES: return set_frames(u, o, text);
+    case OPTION_RANGE: return set_range(u, o, text);
     case OPTION_LIST: return set_list(u, o, text);
     }
     return GO_ON;

@@ -23,6 +23,7 @@
 #include <ptie/bench.h>
 #include <ptie/camera.h>
 #include <ptie/context.h>
+#include <ptie/convert.h>
 #include <ptie/dataset.h>
 #include <ptie/figure.h>
 #include <ptie/flow.h>

@@ -8,6 +8,7 @@
 
 /* No parameter struct comes near this; a larger struct_size is memory that nobody initialised. */
 #define LONGEST_STRUCT 65536u
+#define LONGEST_NAME 63
 
 ptie_status ptie_params_read(void *params, size_t size, const void *given, const char *where) {
     PTIE_TRY(ptie_check_pointer(given, where, "params"));
@@ -65,4 +66,15 @@ ptie_status ptie_check_scratch(const void *scratch, const char *where) {
         "%s: scratch is not aligned (expected a multiple of %d as ptie_scratch_alloc gives, "
         "found %p)",
         where, PTIE_ALIGNMENT, scratch);
+}
+
+ptie_status ptie_check_name(const char *name, const char *where) {
+    PTIE_TRY(ptie_check_pointer(name, where, "name"));
+    static const char letters[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    size_t length = strlen(name);
+    if (length >= 1 && length <= LONGEST_NAME && strspn(name, letters) == length) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EINVAL,
+                     "%s: name (expected 1 to %d letters, digits, '_' or '-', found '%s')", where,
+                     LONGEST_NAME, name);
 }

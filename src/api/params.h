@@ -21,6 +21,8 @@ ptie_status ptie_check_number(double value, double low, double high, const char 
                               const char *name);
 /* Finite and > 0. */
 ptie_status ptie_check_positive(double value, const char *where, const char *name);
+/* What a map is called: a word of files and paths, 1 to 63 letters, digits, '_' and '-'. */
+ptie_status ptie_check_name(const char *name, const char *where);
 /* Not NULL and aligned as plans need it. */
 ptie_status ptie_check_scratch(const void *scratch, const char *where);
 

@@ -7,8 +7,6 @@
 #include "api/params.h"
 #include "io/recording.h"
 
-#define LONGEST_NAME 63
-
 ptie_status ptie_recording_open(ptie_recording **out, const char *path) {
     static const char where[] = "ptie_recording_open";
     PTIE_TRY(ptie_check_pointer(out, where, "out"));
@@ -31,18 +29,6 @@ ptie_status ptie_recording_read(ptie_recording *recording, int64_t frame, float 
     PTIE_TRY(ptie_check_pointer(data, where, "data"));
     PTIE_TRY(ptie_check_integer(frame, 0, ptie_io_info(recording)->frames - 1, where, "frame"));
     return ptie_io_read(recording, frame, data);
-}
-
-/* A name is a word of files and paths: letters, digits, '_' and '-'. */
-static ptie_status check_name(const char *name, const char *where) {
-    PTIE_TRY(ptie_check_pointer(name, where, "name"));
-    static const char letters[] =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    size_t length = strlen(name);
-    if (length >= 1 && length <= LONGEST_NAME && strspn(name, letters) == length) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EINVAL,
-                     "%s: name (expected 1 to %d letters, digits, '_' or '-', found '%s')", where,
-                     LONGEST_NAME, name);
 }
 
 static ptie_status check_text(const char *text, size_t bytes, const char *where, const char *name) {
@@ -80,9 +66,10 @@ ptie_status ptie_writer_create(ptie_writer **out, const char *path, const char *
     PTIE_TRY(ptie_check_pointer(out, where, "out"));
     *out = NULL;
     PTIE_TRY(ptie_check_pointer(path, where, "path"));
-    PTIE_TRY(check_name(name, where));
+    PTIE_TRY(ptie_check_name(name, where));
     PTIE_TRY(check_info(info, where));
-    return ptie_io_create(out, path, name, info, overwrite);
+    return ptie_io_create(out, &(ptie_writer_job){
+                                   .path = path, .name = name, .info = *info, .overwrite = overwrite});
 }
 
 ptie_status ptie_writer_append(ptie_writer *writer, const float *frame) {

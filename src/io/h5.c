@@ -11,6 +11,7 @@
 #include "io/endian.h"
 #include "io/h5_driver.h"
 #include "io/input.h"
+#include "io/pack.h"
 
 #define REASON_BYTES 160
 /* Chunks that are kept decoded: a prime number far above their count, and memory used only as
@@ -84,6 +85,7 @@ static hid_t memory_type(ptie_h5_type type) {
     case PTIE_H5_F32: return H5T_NATIVE_FLOAT;
     case PTIE_H5_F64: return H5T_NATIVE_DOUBLE;
     case PTIE_H5_U8: return H5T_NATIVE_UINT8;
+    case PTIE_H5_U16: return H5T_NATIVE_UINT16;
     case PTIE_H5_U32: return H5T_NATIVE_UINT32;
     case PTIE_H5_U64: return H5T_NATIVE_UINT64;
     case PTIE_H5_LINE: break; /* written in place only */
@@ -105,6 +107,7 @@ static hid_t stored_type(ptie_h5_type type) {
     case PTIE_H5_F32: return H5Tcopy(H5T_IEEE_F32LE);
     case PTIE_H5_F64: return H5Tcopy(H5T_IEEE_F64LE);
     case PTIE_H5_U8: return H5Tcopy(H5T_STD_U8LE);
+    case PTIE_H5_U16: return H5Tcopy(H5T_STD_U16LE);
     case PTIE_H5_U32: return H5Tcopy(H5T_STD_U32LE);
     case PTIE_H5_U64: return H5Tcopy(H5T_STD_U64LE);
     case PTIE_H5_LINE: return line_type();
@@ -209,8 +212,15 @@ void ptie_h5_discard(ptie_h5 *h5) {
 /* --- data sets -----------------------------------------------------------------------------------
  */
 
-ptie_status ptie_h5_dataset(ptie_h5 *h5, const char *path, ptie_h5_type type, int32_t rank,
-                            const uint64_t *dims, uint64_t chunk_rows) {
+/* How rows are stored.  Filters of every HDF5: nobody needs a plugin to read them. */
+typedef struct storage {
+    uint64_t chunk_rows; /* 0: contiguous */
+    bool packed;         /* bytes shuffled, then deflated */
+} storage;
+
+static ptie_status create_set(ptie_h5 *h5, const char *path, ptie_h5_type type, int32_t rank,
+                              const uint64_t *dims, storage how) {
+    const uint64_t chunk_rows = how.chunk_rows;
     assert(rank >= 1 && rank <= 4 && (dims[0] > 0 || chunk_rows > 0));
     hsize_t size[4], largest[4], chunk[4];
     for (int32_t d = 0; d < rank; d++) chunk[d] = size[d] = largest[d] = dims[d];
@@ -228,9 +238,20 @@ ptie_status ptie_h5_dataset(ptie_h5 *h5, const char *path, ptie_h5_type type, in
         H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
         H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
     }
+    if (how.packed) H5Pset_shuffle(creation), H5Pset_deflate(creation, PTIE_PACK_LEVEL);
     SCOPED_ID stored = stored_type(type);
     SCOPED_ID set = H5Dcreate2(h5->file, path, stored, space, links, creation, H5P_DEFAULT);
     return written(h5, set >= 0, "create", path);
+}
+
+ptie_status ptie_h5_dataset(ptie_h5 *h5, const char *path, ptie_h5_type type, int32_t rank,
+                            const uint64_t *dims, uint64_t chunk_rows) {
+    return create_set(h5, path, type, rank, dims, (storage){.chunk_rows = chunk_rows});
+}
+
+ptie_status ptie_h5_dataset_packed(ptie_h5 *h5, const char *path, ptie_h5_type type, int32_t rank,
+                                   const uint64_t *dims) {
+    return create_set(h5, path, type, rank, dims, (storage){.chunk_rows = 1, .packed = true});
 }
 
 static ptie_status open_set(const ptie_h5 *h5, const char *path, hid_t *set) {
@@ -334,6 +355,21 @@ ptie_status ptie_h5_write(ptie_h5 *h5, const char *path, ptie_h5_type type, uint
     PTIE_TRY(select_rows(h5, path, set, (rows){first, count}, &file_space, &memory_space));
     herr_t result = H5Dwrite(set, memory_type(type), memory_space, file_space, H5P_DEFAULT, data);
     return written(h5, result >= 0, "write", path);
+}
+
+ptie_status ptie_h5_write_chunk(ptie_h5 *h5, const char *path, uint64_t row, const void *chunk,
+                                size_t bytes) {
+    LOCK_HDF5;
+    int32_t rank;
+    hsize_t dims[4], first[4] = {row};
+    SCOPED_ID set = H5I_INVALID_HID;
+    PTIE_TRY(open_set(h5, path, &set));
+    PTIE_TRY(grow(h5, path, set, row + 1));
+    PTIE_TRY(set_shape(h5, path, set, &rank, dims));
+    if (row >= dims[0])
+        return PTIE_FAIL(PTIE_EINVAL, "%s: %s has no row %llu (expected 0..%llu)", h5->path, path,
+                         (unsigned long long)row, (unsigned long long)dims[0] - 1);
+    return written(h5, H5Dwrite_chunk(set, H5P_DEFAULT, 0, first, bytes, chunk) >= 0, "write", path);
 }
 
 /* Opens a data set to read rows from, with room for the chunks that several rows share. */

@@ -16,6 +16,7 @@ typedef enum ptie_h5_type {
     PTIE_H5_F32,
     PTIE_H5_F64,
     PTIE_H5_U8,
+    PTIE_H5_U16,
     PTIE_H5_U32,
     PTIE_H5_U64,
     PTIE_H5_LINE /* text of at most PTIE_H5_LINE_BYTES, filled up with NUL */
@@ -37,6 +38,10 @@ void ptie_h5_discard(ptie_h5 *h5);
    place in the file at once and reads as zeros until it is written. */
 ptie_status ptie_h5_dataset(ptie_h5 *h5, const char *path, ptie_h5_type type, int32_t rank,
                             const uint64_t *dims, uint64_t chunk_rows);
+/* The same with one row per chunk, shuffled and deflated: rows are packed on any thread (io/pack.h) and
+   handed to ptie_h5_write_chunk; ptie_h5_write packs, too, but on its own thread and slowly. */
+ptie_status ptie_h5_dataset_packed(ptie_h5 *h5, const char *path, ptie_h5_type type, int32_t rank,
+                                   const uint64_t *dims);
 /* Shape of a data set; rank 1..4. */
 ptie_status ptie_h5_shape(ptie_h5 *h5, const char *path, int32_t *rank, uint64_t dims[4]);
 bool ptie_h5_exists(ptie_h5 *h5, const char *path);
@@ -50,6 +55,10 @@ ptie_status ptie_h5_list(ptie_h5 *h5, ptie_text *lines);
  * converts. */
 ptie_status ptie_h5_write(ptie_h5 *h5, const char *path, ptie_h5_type type, uint64_t first,
                           uint64_t count, const void *data);
+/* One row of a data set with one row per chunk, as it is to stand in the file: little-endian, and packed
+   if the data set is. */
+ptie_status ptie_h5_write_chunk(ptie_h5 *h5, const char *path, uint64_t row, const void *chunk,
+                                size_t bytes);
 ptie_status ptie_h5_read(ptie_h5 *h5, const char *path, ptie_h5_type type, uint64_t first,
                          uint64_t count, void *data);
 

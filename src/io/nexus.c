@@ -3,6 +3,8 @@
 
 #include <stdio.h>
 
+#include <ptie/version.h>
+
 #include "base/memory.h"
 
 #define ENTRY "/entry"
@@ -68,7 +70,8 @@ static ptie_status make_signal(ptie_h5 *h5, const ptie_nexus_axes *axes,
     const uint64_t dims[3] = {axes->frames, (uint64_t)axes->height_px, (uint64_t)axes->width_px};
     const double pixel_um = 1e6 * axes->pixel_m;
     snprintf(path, sizeof path, PTIE_NEXUS_DATA "/%s", signal->name);
-    PTIE_TRY(ptie_h5_dataset(h5, path, PTIE_H5_F32, 3, dims, !axes->in_place));
+    PTIE_TRY(signal->packed ? ptie_h5_dataset_packed(h5, path, signal->type, 3, dims)
+                            : ptie_h5_dataset(h5, path, signal->type, 3, dims, !axes->in_place));
     PTIE_TRY(ptie_h5_set_text(h5, path, "units", signal->unit));
     PTIE_TRY(ptie_h5_set_text(h5, path, "long_name",
                               signal->long_name ? signal->long_name : signal->name));
@@ -89,4 +92,13 @@ ptie_status ptie_nexus_begin(ptie_h5 *h5, const ptie_nexus_axes *axes,
 
 ptie_status ptie_nexus_end(ptie_h5 *h5, const ptie_nexus_axes *axes) {
     return write_time(h5, axes);
+}
+
+ptie_status ptie_nexus_process(ptie_h5 *h5, const char *recording, const char *command) {
+    static const char process[] = PTIE_NEXUS_PROCESS;
+    PTIE_TRY(ptie_h5_set_text(h5, process, "NX_class", "NXprocess"));
+    PTIE_TRY(ptie_h5_set_text(h5, process, "program", "ptie"));
+    PTIE_TRY(ptie_h5_set_text(h5, process, "version", PTIE_VERSION_STRING));
+    if (recording) PTIE_TRY(ptie_h5_set_text(h5, process, "recording", recording));
+    return command ? ptie_h5_set_text(h5, process, "command", command) : PTIE_OK;
 }

@@ -6,7 +6,7 @@
  *   /entry       @NX_class = "NXentry" @default = "data"
  *   /entry/data  @NX_class = "NXdata" @signal = the first map @auxiliary_signals = the others
  *                @axes = ["time", "y", "x"]
- *     NAME       [T, H, W] float32, @units @long_name @interpretation = "image"
+ *     NAME       [T, H, W], @units @long_name @interpretation = "image"
  *     time y x   [T] [H] [W] float64, @units; time has @first_frame and @frame_step, too
  */
 #ifndef PTIE_IO_NEXUS_H
@@ -31,6 +31,8 @@ typedef struct ptie_nexus_axes {
 typedef struct ptie_nexus_signal {
     const char *name, *long_name; /* "phase", "Phase of the gas flow" (NULL: the name) */
     const char *unit;             /* "rad"; "" for none */
+    ptie_h5_type type;            /* as stored; PTIE_H5_F32 unless said */
+    bool packed;                  /* compressed: ptie_h5_dataset_packed */
 } ptie_nexus_signal;
 
 /* Makes the groups, the axes and `count` >= 1 empty signals, one frame to a chunk unless they are in place.  Frames are then
@@ -39,5 +41,10 @@ ptie_status ptie_nexus_begin(ptie_h5 *h5, const ptie_nexus_axes *axes,
                              const ptie_nexus_signal *signals, size_t count);
 /* Completes the time axis when axes->frames, now known, was 0 at the beginning. */
 ptie_status ptie_nexus_end(ptie_h5 *h5, const ptie_nexus_axes *axes);
+
+/* Writes down how the file came about: /entry/process_1 (NXprocess) with program, version, and what is not NULL of
+   the recording it was made from and the command line.  More may be added to the group. */
+#define PTIE_NEXUS_PROCESS "/entry/process_1"
+ptie_status ptie_nexus_process(ptie_h5 *h5, const char *recording, const char *command);
 
 #endif

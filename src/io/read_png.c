@@ -176,8 +176,9 @@ static ptie_status png_load(grey_png *image, decoder *d, ptie_recording_info *in
     info->frames = 1;
     image->width = info->width_px;
     image->height = info->height_px;
-    snprintf(info->sample, sizeof info->sample,
-             png_get_bit_depth(d->png, d->info) == 16 ? "u16" : "u8");
+    const bool scaled = image->offset != 0 || image->scale != 1;
+    snprintf(info->sample, sizeof info->sample, "%s",
+             scaled ? "f32" : png_get_bit_depth(d->png, d->info) == 16 ? "u16" : "u8");
     return PTIE_OK;
 }
 

@@ -5,7 +5,7 @@
 
 #include <ptie/recording.h>
 
-#include "base/status.h"
+#include "io/writer.h"
 
 ptie_status ptie_io_open(ptie_recording **out, const char *path);
 void ptie_io_close(ptie_recording *recording); /* NULL is fine */
@@ -15,8 +15,8 @@ ptie_status ptie_io_read(ptie_recording *recording, int64_t frame, float *data);
 /* Is `path` a file that holds several data sets, none of which it names ("jet.h5")? */
 bool ptie_io_has_data_sets(const char *path);
 
-ptie_status ptie_io_create(ptie_writer **out, const char *path, const char *name,
-                           const ptie_recording_info *info, bool overwrite);
+/* ptie_writer_create with all a writer can be told.  path and name are copied, other strings are not. */
+ptie_status ptie_io_create(ptie_writer **out, const ptie_writer_job *job);
 ptie_status ptie_io_append(ptie_writer *writer, const float *frame);
 ptie_status ptie_io_complete(ptie_writer *writer); /* ptie_writer_close */
 void ptie_io_discard(ptie_writer *writer);         /* NULL is fine */

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/endian.h"
+
 /* One loop per type: a fixed-size memcpy is a plain load, whatever the alignment. */
 #define CONVERTER(type)                                                                            \
     static void convert_##type(float *out, const unsigned char *in, size_t count) {                \
@@ -63,4 +65,30 @@ void ptie_sample_swap(void *samples, size_t count, ptie_sample sample) {
 
 void ptie_sample_convert(float *out, const void *samples, size_t count, ptie_sample sample) {
     find(sample)(out, samples, count);
+}
+
+static size_t store_floats(unsigned char *out, const float *values, size_t count) {
+    if (ptie_machine_is_little()) {
+        memcpy(out, values, count * sizeof *values);
+        return count;
+    }
+    for (size_t i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, values + i, sizeof bits);
+        ptie_put_le(out + 4 * i, bits, 4);
+    }
+    return count;
+}
+
+size_t ptie_sample_store(unsigned char *out, const float *values, size_t count,
+                         ptie_sample sample) {
+    if (sample.kind == 'f') return store_floats(out, values, count);
+    const float largest = sample.bytes == 1 ? UINT8_MAX : UINT16_MAX;
+    for (size_t i = 0; i < count; i++) {
+        if (!(values[i] >= 0 && values[i] <= largest)) return i; /* NaN, too */
+        const uint32_t whole = (uint32_t)values[i];
+        if ((float)whole != values[i]) return i;
+        ptie_put_le(out + i * sample.bytes, whole, sample.bytes);
+    }
+    return count;
 }

@@ -23,5 +23,8 @@ void ptie_sample_name(char name[16], ptie_sample sample);
 void ptie_sample_swap(void *samples, size_t count, ptie_sample sample);
 /* Samples in the machine's byte order, of any alignment, to float. */
 void ptie_sample_convert(float *out, const void *samples, size_t count, ptie_sample sample);
+/* The other way for u8, u16 and f32, little-endian.  Returns how many were stored: less than `count`
+   when values[that] is not a value of the sample type. */
+size_t ptie_sample_store(unsigned char *out, const float *values, size_t count, ptie_sample sample);
 
 #endif

@@ -15,13 +15,15 @@ typedef struct layout {
     FILE *out;
     bool big;
     uint64_t width, height, frames, frame_bytes;
+    ptie_sample stored;
     uint64_t text_at, text_bytes; /* ImageJ's description */
     uint64_t resolution;          /* numerator and denominator as stored */
     uint64_t resolution_at;
 } layout;
 
 /* What ImageJ reads: number of frames, scale, time between frames, unit of the values. */
-static void describe(ptie_text *text, const ptie_recording_info *info) {
+static void describe(ptie_text *text, const ptie_writer_job *job) {
+    const ptie_recording_info *info = &job->info;
     const long long frames = info->frames;
     ptie_text_append(text, "ImageJ=1.53t\nimages=%lld\nframes=%lld\n", frames, frames);
     if (frames > 1) ptie_text_append(text, "hyperstack=true\n");
@@ -71,7 +73,7 @@ static uint64_t write_directory(const layout *l, uint64_t frame, uint64_t at) {
     ptie_write_le(l->out, entries, l->big ? 8 : 2);
     write_entry(l, 256, LONG, 1, l->width);
     write_entry(l, 257, LONG, 1, l->height);
-    write_entry(l, 258, SHORT, 1, 32); /* bits per sample */
+    write_entry(l, 258, SHORT, 1, 8 * l->stored.bytes); /* bits per sample */
     write_entry(l, 259, SHORT, 1, 1);  /* no compression */
     write_entry(l, 262, SHORT, 1, 1);  /* 0 is black */
     if (frame == 0) write_entry(l, 270, ASCII, l->text_bytes, l->text_at);
@@ -83,37 +85,36 @@ static uint64_t write_directory(const layout *l, uint64_t frame, uint64_t at) {
     write_entry(l, 282, RATIONAL, 1, resolution);
     write_entry(l, 283, RATIONAL, 1, resolution);
     write_entry(l, 296, SHORT, 1, 1); /* the description names the unit */
-    write_entry(l, 339, SHORT, 1, 3); /* IEEE floating point */
+    write_entry(l, 339, SHORT, 1, l->stored.kind == 'f' ? 3 : 1); /* IEEE floating point, unsigned */
     write_offset(l, frame + 1 < l->frames ? at + bytes : 0);
     return bytes;
 }
 
-static layout plan(FILE *out, const ptie_recording_info *info, uint64_t text_length,
-                   uint64_t largest) {
-    const uint64_t width = (uint64_t)info->width_px, height = (uint64_t)info->height_px;
-    const uint64_t frames = (uint64_t)info->frames, frame_bytes = 4 * width * height;
+static layout plan(FILE *out, const ptie_writer_job *job, uint64_t text_length, uint64_t largest) {
+    const uint64_t frames = (uint64_t)job->info.frames, frame_bytes = ptie_job_bytes(job);
     const uint64_t data_end = PTIE_TIFF_DATA + frames * frame_bytes;
     const uint64_t text_bytes = (text_length + 8) / 8 * 8; /* at least one NUL */
     return (layout){.out = out,
                     .big = data_end + text_bytes + frames * DIRECTORY_BYTES > largest,
-                    .width = width,
-                    .height = height,
+                    .width = (uint64_t)job->info.width_px,
+                    .height = (uint64_t)job->info.height_px,
                     .frames = frames,
                     .frame_bytes = frame_bytes,
+                    .stored = job->stored,
                     .text_at = data_end,
                     .text_bytes = text_bytes,
-                    .resolution = resolution_of(info->pixel_m),
+                    .resolution = resolution_of(job->info.pixel_m),
                     .resolution_at = data_end + text_bytes};
 }
 
-ptie_status ptie_tiff_write_tail(FILE *out, const ptie_recording_info *info, uint64_t largest) {
+ptie_status ptie_tiff_write_tail(FILE *out, const ptie_writer_job *job, uint64_t largest) {
     ptie_text text = {0};
-    describe(&text, info);
+    describe(&text, job);
     if (text.failed) {
         ptie_text_free(&text);
         return PTIE_FAIL(PTIE_ENOMEM, "TIFF description: out of memory");
     }
-    const layout l = plan(out, info, text.length, largest);
+    const layout l = plan(out, job, text.length, largest);
     fwrite(text.data, 1, text.length, out);
     for (uint64_t i = text.length; i < l.text_bytes; i++) fputc(0, out);
     ptie_write_le(out, l.resolution, 8);

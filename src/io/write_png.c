@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* 16-bit grey PNG, one file per frame.  Each frame uses the whole range of 16 bits; text chunks say
- * how its values come back.  All files keep their ".part" names until the last one is complete. */
+/* Grey PNG, one file per frame.  Integers are stored as they are; other values are spread over 16 bits,
+ * and text chunks say how they come back.  All files keep their ".part" names until the last one is
+ * complete. */
 #include <errno.h>
 #include <math.h>
 #include <png.h>
@@ -11,6 +12,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "io/array.h"
+#include "io/endian.h"
 #include "io/pattern.h"
 #include "io/png_keys.h"
 #include "io/writer.h"
@@ -24,6 +26,7 @@ typedef struct png_output {
     ptie_output_file *files;
     size_t count, capacity;
     unsigned char *row; /* big-endian samples */
+    unsigned char *integers; /* a frame as stored; NULL when values are spread */
 } png_output;
 
 /* One pass of libpng over a file. */
@@ -60,6 +63,7 @@ static void png_discard(void *state) {
     for (size_t i = 0; i < output->count; i++) ptie_output_discard(&output->files[i]);
     ptie_free(output->files);
     ptie_free(output->row);
+    ptie_free(output->integers);
     ptie_free(output);
 }
 
@@ -89,6 +93,8 @@ static ptie_status png_create(void **state, const ptie_writer_job *job) {
     output->numbered = numbered;
     output->pattern = pattern;
     ptie_status status = ptie_alloc_status(&output->row, (size_t)job->info.width_px, 2, job->path);
+    if (status == PTIE_OK && job->stored.kind == 'u' && !(job->low < job->high))
+        status = ptie_alloc_status(&output->integers, ptie_job_bytes(job), 1, job->path);
     if (status == PTIE_OK && job->info.frames > 0) status = check_behind(output, job->info.frames);
     if (status != PTIE_OK) {
         png_discard(output);
@@ -98,15 +104,16 @@ static ptie_status png_create(void **state, const ptie_writer_job *job) {
     return PTIE_OK;
 }
 
-/* Spreads the frame's values over the 16 bits. */
+/* Spreads the wanted range, or that of the frame, over the 16 bits. */
 static void find_scale(encoder *e, size_t count) {
-    float low = e->frame[0], high = e->frame[0];
-    for (size_t i = 1; i < count; i++) {
-        low = fminf(low, e->frame[i]);
-        high = fmaxf(high, e->frame[i]);
+    double low = e->output->job.low, high = e->output->job.high;
+    if (!(low < high)) {
+        const ptie_extent extent = ptie_image_extent(e->frame, count);
+        low = (double)extent.low;
+        high = (double)extent.high;
     }
-    e->offset = (double)low;
-    e->scale = ((double)high - (double)low) / 65535;
+    e->offset = low;
+    e->scale = (high - low) / 65535;
 }
 
 static unsigned sample_of(const encoder *e, float value) {
@@ -133,28 +140,41 @@ static void set_notes(const encoder *e) {
     const ptie_writer_job *job = &e->output->job;
     set_note(e, PTIE_PNG_NAME, job->name);
     set_note(e, PTIE_PNG_UNIT, job->info.unit);
-    set_number(e, PTIE_PNG_OFFSET, e->offset);
-    set_number(e, PTIE_PNG_SCALE, e->scale);
+    if (!e->output->integers) {
+        set_number(e, PTIE_PNG_OFFSET, e->offset);
+        set_number(e, PTIE_PNG_SCALE, e->scale);
+    }
     set_number(e, PTIE_PNG_RATE, job->info.frame_rate_hz);
     set_number(e, PTIE_PNG_PIXEL, job->info.pixel_m);
 }
 
+/* A row of big-endian samples. */
+static const unsigned char *encode_row(const encoder *e, size_t y, size_t width) {
+    const png_output *output = e->output;
+    const size_t bytes = output->job.stored.bytes;
+    const unsigned char *integers = output->integers ? output->integers + y * width * bytes : NULL;
+    if (integers && bytes == 1) return integers;
+    for (size_t x = 0; x < width; x++) {
+        const unsigned sample = integers ? (unsigned)ptie_get_le(integers + 2 * x, 2)
+                                         : sample_of(e, e->frame[y * width + x]);
+        output->row[2 * x] = (unsigned char)(sample >> 8);
+        output->row[2 * x + 1] = (unsigned char)sample;
+    }
+    return output->row;
+}
+
 static void encode(encoder *e) {
-    const ptie_recording_info *info = &e->output->job.info;
-    const size_t width = (size_t)info->width_px, height = (size_t)info->height_px;
+    const png_output *output = e->output;
+    const size_t width = (size_t)output->job.info.width_px;
+    const size_t height = (size_t)output->job.info.height_px;
+    const int bits = output->integers ? 8 * (int)output->job.stored.bytes : 16;
     png_set_write_fn(e->png, e->stream, write_bytes, flush_nothing);
-    png_set_IHDR(e->png, e->info, (png_uint_32)width, (png_uint_32)height, 16, PNG_COLOR_TYPE_GRAY,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(e->png, e->info, (png_uint_32)width, (png_uint_32)height, bits,
+                 PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
     set_notes(e);
     png_write_info(e->png, e->info);
-    for (size_t y = 0; y < height; y++) {
-        for (size_t x = 0; x < width; x++) {
-            unsigned sample = sample_of(e, e->frame[y * width + x]);
-            e->output->row[2 * x] = (unsigned char)(sample >> 8);
-            e->output->row[2 * x + 1] = (unsigned char)sample;
-        }
-        png_write_row(e->png, e->output->row);
-    }
+    for (size_t y = 0; y < height; y++) png_write_row(e->png, encode_row(e, y, width));
     png_write_end(e->png, NULL);
 }
 
@@ -200,6 +220,7 @@ static ptie_status png_append(void *state, const float *frame) {
     const int32_t width = output->job.info.width_px, height = output->job.info.height_px;
     PTIE_TRY(file_name(output, output->count, path));
     PTIE_TRY(ptie_image_finite(frame, width, height, path));
+    if (output->integers) PTIE_TRY(ptie_job_encode(&output->job, output->integers, frame));
     PTIE_TRY(ptie_array_room(&output->files, output->count, &output->capacity,
                              sizeof *output->files, path));
     ptie_output_file *file = &output->files[output->count];

@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "io/recording.h"
 
 struct ptie_writer {
@@ -34,9 +35,30 @@ static void writer_free(ptie_writer *writer) {
     ptie_free(writer);
 }
 
-ptie_status ptie_io_create(ptie_writer **out, const char *path, const char *name,
-                           const ptie_recording_info *info, bool overwrite) {
+/* Integers of up to 16 bits stay what they are; everything else is float32. */
+static ptie_sample stored_sample(const char *sample) {
+    int64_t bits;
+    if (sample[0] != 'u' || !ptie_parse_integer(sample + 1, 1, 16, &bits))
+        return (ptie_sample){'f', sizeof(float)};
+    return (ptie_sample){'u', bits > 8 ? 2 : 1};
+}
+
+size_t ptie_job_bytes(const ptie_writer_job *job) {
+    return (size_t)job->info.width_px * (size_t)job->info.height_px * job->stored.bytes;
+}
+
+ptie_status ptie_job_encode(const ptie_writer_job *job, unsigned char *bytes, const float *frame) {
+    const size_t width = (size_t)job->info.width_px, count = width * (size_t)job->info.height_px;
+    const size_t stored = ptie_sample_store(bytes, frame, count, job->stored);
+    if (stored == count) return PTIE_OK;
+    return PTIE_FAIL(PTIE_ENUMERIC, "%s: value cannot be stored (at x=%zu, y=%zu expected a whole number "
+                     "of %zu bits, found %.9g)", job->path, stored % width, stored / width,
+                     8 * job->stored.bytes, (double)frame[stored]);
+}
+
+ptie_status ptie_io_create(ptie_writer **out, const ptie_writer_job *job) {
     ptie_writer *writer;
+    const char *path = job->path;
     *out = NULL;
     const ptie_writer_format *format = find_format(path);
     if (!format)
@@ -47,8 +69,11 @@ ptie_status ptie_io_create(ptie_writer **out, const char *path, const char *name
     PTIE_TRY(ptie_alloc_status(&writer, 1, sizeof *writer, path));
     writer->format = format;
     writer->path = ptie_strdup(path);
-    writer->name = ptie_strdup(name);
-    writer->job = (ptie_writer_job){writer->path, writer->name, *info, overwrite};
+    writer->name = ptie_strdup(job->name);
+    writer->job = *job;
+    writer->job.path = writer->path;
+    writer->job.name = writer->name;
+    writer->job.stored = stored_sample(job->info.sample);
     ptie_status status = writer->path && writer->name
                              ? format->create(&writer->state, &writer->job)
                              : PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);

@@ -5,14 +5,26 @@
 
 #include <ptie/recording.h>
 
-#include "base/status.h"
+#include "base/pool.h"
+#include "io/sample.h"
 
 /* What is to be written; strings live as long as the writer. */
 typedef struct ptie_writer_job {
     const char *path, *name;
     ptie_recording_info info; /* frames 0: not known yet */
     bool overwrite;
+    const char *source, *command; /* the recording it was made from, and how; NULL: not told */
+    bool compress;    /* HDF5: shuffled and deflated */
+    ptie_pool *pool;  /* compresses on its threads; NULL: on the caller's */
+    double low, high; /* images: values of black and white; equal: each frame's own extent */
+    ptie_sample stored; /* f32, u8 or u16, from info.sample; set by ptie_io_create */
 } ptie_writer_job;
+
+/* Bytes of a frame as stored. */
+size_t ptie_job_bytes(const ptie_writer_job *job);
+/* A frame as it is stored, little-endian.  PTIE_ENUMERIC names the first pixel whose value the sample
+   type does not have. */
+ptie_status ptie_job_encode(const ptie_writer_job *job, unsigned char *bytes, const float *frame);
 
 typedef struct ptie_writer_format {
     const char *endings[3];                                          /* NULL after the last */

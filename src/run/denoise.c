@@ -36,7 +36,11 @@ static ptie_status prepare(denoising *d, const ptie_engine *engine) {
     PTIE_TRY(ptie_alloc_status(&d->maps, d->slots, d->pixels * sizeof(float), "frames"));
     PTIE_TRY(ptie_alloc_status(&d->scratch, workers, d->scratch_bytes, "scratch of the network"));
     snprintf(info.unit, sizeof info.unit, "rad");
-    return ptie_io_create(&d->output, p->output, "denoised", &info, p->overwrite);
+    snprintf(info.sample, sizeof info.sample, "f32");
+    return ptie_io_create(&d->output, &(ptie_writer_job){.path = p->output,
+                                                         .name = "denoised",
+                                                         .info = info,
+                                                         .overwrite = p->overwrite});
 }
 
 static ptie_status read_frame(void *context, int64_t frame, size_t slot) {

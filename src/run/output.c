@@ -30,8 +30,9 @@ static ptie_status write_process(ptie_h5 *h5, const ptie_run_params *params) {
 }
 
 ptie_status ptie_output_create(ptie_h5 **out, const ptie_run_params *params, const ptie_nexus_axes *axes) {
-    static const ptie_nexus_signal phase = {"phase", "Phase by the transport-of-intensity equation", "rad"};
-    static const ptie_nexus_signal denoised = {"denoised", "Denoised phase", "rad"};
+    static const ptie_nexus_signal phase = {
+        .name = "phase", .long_name = "Phase by the transport-of-intensity equation", .unit = "rad"};
+    static const ptie_nexus_signal denoised = {.name = "denoised", .long_name = "Denoised phase", .unit = "rad"};
     /* The best map comes first: it is what viewers show. */
     const ptie_nexus_signal signals[] = {params->model ? denoised : phase, phase};
     PTIE_TRY(ptie_h5_create(out, params->output, params->overwrite));

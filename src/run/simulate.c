@@ -119,8 +119,9 @@ static ptie_status describe_simulation(ptie_h5 *h5, const ptie_simulate_params *
 }
 
 static ptie_status describe(ptie_h5 *h5, const ptie_simulate_params *p) {
-    static const ptie_nexus_signal planes[] = {{"plus", "Intensity beyond focus", "I/I0"},
-                                               {"minus", "Intensity before focus", "I/I0"}};
+    static const ptie_nexus_signal planes[] = {
+        {.name = "plus", .long_name = "Intensity beyond focus", .unit = "I/I0"},
+        {.name = "minus", .long_name = "Intensity before focus", .unit = "I/I0"}};
     const ptie_nexus_axes axes = {.frames = (uint64_t)p->frames,
                                   .width_px = p->flow.width_px,
                                   .height_px = p->flow.height_px,

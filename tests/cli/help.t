@@ -15,6 +15,7 @@ The overview
     denoise      phase -> denoised phase
     run          recording -> phase -> denoised phase -> metrics, in one pass
     metrics      MGM, SBR, BNS and CNR over frames and regions
+    convert      a recording as another kind of file, or a part of it
     info         what is in a file, a model, a preset, this machine
     bench        how fast all of it is on this machine
   
@@ -396,6 +397,45 @@ metrics
   CNR  |mean jet - mean background| / sqrt(var jet + var background)
   RMSE, correlation: against the truth, means taken out
   signal kept: slope of the map on the truth; 1 = all of it, 0 = erased
+
+convert
+  $ ptie help convert
+  Writes a recording as another kind of file, or a part of it.
+  
+  Examples:
+    # what the camera wrote, for Python and MATLAB; a third of the size
+    ptie convert shot.h5 small.h5 --compress
+  
+    # phase as a stack for Fiji, with scale and frame interval
+    ptie convert phase.h5 phase.tif
+  
+    # every second of the first 100 frames, a rectangle of them
+    ptie convert phase.h5 part.npy --frames 0:100:2 --roi 64,0,128,256
+  
+    # images with one grey scale for all
+    ptie convert phase.h5 flow_%04d.png --range -1:3
+  
+  Usage:
+    ptie convert INPUT OUTPUT [options]
+  
+  Options:
+        --frames A:B:STEP     frames to take, B not included
+        --roi x,y,w,h         rectangle to take, pixels
+        --range LOW:HIGH      PNG: values of black and white, instead of each
+                              frame's own
+        --compress            HDF5: shuffled and deflated
+    -f, --force               replace existing output
+    -T, --threads N           worker threads; 0 = all processors (default: 0)
+        --cpu LEVEL           auto, scalar, avx2 or avx512 (default: auto)
+        --progress HOW        on stderr; auto is a bar on a terminal (auto, bar,
+                              plain, json, none; default: auto)
+    -h, --help                this text
+  
+  INPUT is anything 'ptie info' knows as a recording: HDF5 (FILE.h5 or
+  FILE.h5:/path/inside), TIFF, NPY, PNG, a folder of numbered images, or a
+  pattern with one %d. The ending of OUTPUT decides what is written: .h5 .tif
+  .npy .png (a pattern with one %d for several frames). Integers of up to 16
+  bits stay integers, everything else becomes float32.
 
 info
   $ ptie help info

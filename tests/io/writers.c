@@ -101,10 +101,98 @@ static void what_is_written_is_read(void **state) {
     const char *pattern = support_temporary("png_%03d.png");
     assert_ok(write_frames(pattern, T, T, false));
     assert_true(support_exists(support_temporary("png_002.png")));
-    check_frames(pattern, "PNG sequence", "u16", T, png_slack);
+    check_frames(pattern, "PNG sequence", "f32", T, png_slack);
     check_notes(pattern);
     assert_ok(write_frames(support_temporary("one.png"), 1, 1, false));
-    check_frames(support_temporary("one.png"), "PNG", "u16", 1, png_slack);
+    check_frames(support_temporary("one.png"), "PNG", "f32", 1, png_slack);
+}
+
+/* Two frames of counts: from 0 up to `largest` in equal steps, and back. */
+static ptie_status write_counts(const char *path, const char *sample, float largest) {
+    ptie_writer *writer;
+    float frame[PIXELS];
+    ptie_recording_info counts = info;
+    counts.frames = 2;
+    snprintf(counts.sample, sizeof counts.sample, "%s", sample);
+    PTIE_TRY(ptie_writer_create(&writer, path, "counts", &counts, true));
+    for (int t = 0; t < 2; t++) {
+        for (size_t i = 0; i < PIXELS; i++)
+            frame[i] = largest / 34 * (float)(t ? PIXELS - 1 - i : i);
+        ptie_status status = ptie_writer_append(writer, frame);
+        if (status != PTIE_OK) {
+            ptie_writer_discard(writer);
+            return status;
+        }
+    }
+    return ptie_writer_close(writer);
+}
+
+static void check_counts(const char *path, const char *sample, float largest) {
+    ptie_recording *recording;
+    float frame[PIXELS];
+    assert_ok(ptie_recording_open(&recording, path));
+    assert_string_equal(ptie_recording_get_info(recording)->sample, sample);
+    for (int t = 0; t < 2; t++) {
+        assert_ok(ptie_recording_read(recording, t, frame));
+        for (size_t i = 0; i < PIXELS; i++)
+            assert_true(frame[i] == largest / 34 * (float)(t ? PIXELS - 1 - i : i));
+    }
+    ptie_recording_close(recording);
+}
+
+static void integers_stay_integers(void **state) {
+    (void)state;
+    static const char *const names[] = {"counts.npy", "counts.tif", "counts.h5", "counts_%d.png"};
+    for (size_t i = 0; i < 4; i++) {
+        const char *path = support_temporary(names[i]);
+        assert_ok(write_counts(path, "u8", 34 * 7));
+        check_counts(path, "u8", 34 * 7);
+        assert_ok(write_counts(path, "u12", 34 * 1927)); /* up to 65518 */
+        check_counts(path, "u16", 34 * 1927);
+        if (i == 3) continue;
+        assert_ok(write_counts(path, "i16", 34 * 1928)); /* float32 */
+        check_counts(path, "f32", 34 * 1928);
+    }
+}
+
+static void what_is_no_integer_is_refused(void **state) {
+    (void)state;
+    static const char *const names[] = {"no.npy", "no.tif", "no.h5", "no_%d.png"};
+    for (size_t i = 0; i < 4; i++) {
+        const char *path = support_temporary(names[i]);
+        assert_fails(write_counts(path, "u8", 34 * 8), PTIE_ENUMERIC,
+                     "at x=4, y=4 expected a whole number of 8 bits, found 256");
+        assert_fails(write_counts(path, "u16", 17), PTIE_ENUMERIC,
+                     "at x=1, y=0 expected a whole number of 16 bits, found 0.5");
+        assert_fails(write_counts(path, "u16", -34), PTIE_ENUMERIC, "found -1");
+        assert_fails(write_counts(path, "u16", 34 * 1928), PTIE_ENUMERIC, "found 65552");
+        support_assert_nothing_left(i == 3 ? support_temporary("no_0.png") : path);
+    }
+}
+
+/* info->frame_rate_hz is that of the frames in the file, also when a step lies between them. */
+static void a_stepped_recording_keeps_its_rate(void **state) {
+    (void)state;
+    ptie_writer *writer;
+    ptie_recording *recording;
+    float frame[PIXELS];
+    ptie_recording_info stepped = info;
+    const char *path = support_temporary("stepped.h5");
+    stepped.first_frame = 10;
+    stepped.frame_step = 4;
+    assert_ok(ptie_writer_create(&writer, path, "phase", &stepped, false));
+    for (int64_t t = 0; t < T; t++) {
+        fill(frame, t);
+        assert_ok(ptie_writer_append(writer, frame));
+    }
+    assert_ok(ptie_writer_close(writer));
+    assert_ok(ptie_recording_open(&recording, path));
+    const ptie_recording_info *found = ptie_recording_get_info(recording);
+    assert_int_equal(found->first_frame, 10);
+    assert_int_equal(found->frame_step, 4);
+    /* Times 10/R and 14/R, R = 4 * 25 kHz, are rounded to 2^-53; their difference is 2.5 times smaller. */
+    assert_near(found->frame_rate_hz / info.frame_rate_hz, 1, 0x1p-49);
+    ptie_recording_close(recording);
 }
 
 static void a_constant_png_is_exact(void **state) {
@@ -319,7 +407,8 @@ static void a_large_tiff_is_a_bigtiff(void **state) {
         fill(frame, t);
         fwrite(frame, sizeof frame, 1, out);
     }
-    assert_ok(ptie_tiff_write_tail(out, &info, 100)); /* 100 bytes are "too large" already */
+    const ptie_writer_job job = {.info = info, .stored = {'f', 4}};
+    assert_ok(ptie_tiff_write_tail(out, &job, 100)); /* 100 bytes are "too large" already */
     assert_int_equal(fclose(out), 0);
     check_frames(path, "TIFF", "f32", T, 0);
     check_notes(path);
@@ -370,8 +459,9 @@ static void h5py_reads_hdf5(void **state) {
 /* Two signals, frames 10, 12, 14 of a recording without scale: what the pipeline writes. */
 static void nexus_holds_several_signals(void **state) {
     (void)state;
-    static const ptie_nexus_signal signals[] = {{"phase", "Phase of the gas flow", "rad"},
-                                                {"denoised", NULL, "rad"}};
+    static const ptie_nexus_signal signals[] = {
+        {.name = "phase", .long_name = "Phase of the gas flow", .unit = "rad"},
+        {.name = "denoised", .unit = "rad"}};
     const ptie_nexus_axes axes = {
         .frames = T, .width_px = W, .height_px = H, .first_frame = 10, .frame_step = 2};
     const char *path = support_temporary("nexus.h5");
@@ -401,6 +491,9 @@ static void nexus_holds_several_signals(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_written_is_read),
+        cmocka_unit_test(integers_stay_integers),
+        cmocka_unit_test(what_is_no_integer_is_refused),
+        cmocka_unit_test(a_stepped_recording_keeps_its_rate),
         cmocka_unit_test(a_constant_png_is_exact),
         cmocka_unit_test(nothing_appears_before_the_end),
         cmocka_unit_test(the_number_of_frames_is_kept),

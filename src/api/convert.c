@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* <ptie/convert.h>: arguments checked, then inward. */
+#include <ptie/convert.h>
+
+#include "api/context.h"
+#include "api/params.h"
+#include "run/convert.h"
+
+void ptie_convert_params_init(ptie_convert_params *params) {
+    *params = (ptie_convert_params){.struct_size = sizeof *params, .step = 1};
+}
+
+ptie_status ptie_convert(ptie_ctx *ctx, const ptie_convert_params *params, ptie_progress progress) {
+    static const char where[] = "ptie_convert";
+    ptie_convert_params own;
+    ptie_convert_params_init(&own);
+    PTIE_TRY(ptie_check_pointer(ctx, where, "ctx"));
+    PTIE_TRY(ptie_params_read(&own, sizeof own, params, where));
+    PTIE_TRY(ptie_check_pointer(own.input, where, "input"));
+    PTIE_TRY(ptie_check_pointer(own.output, where, "output"));
+    if (own.name) PTIE_TRY(ptie_check_name(own.name, where));
+    PTIE_TRY(ptie_check_integer(own.first, 0, INT64_MAX, where, "first"));
+    PTIE_TRY(ptie_check_integer(own.count, 0, INT64_MAX, where, "count"));
+    PTIE_TRY(ptie_check_integer(own.step, 1, INT32_MAX, where, "step"));
+    PTIE_TRY(ptie_check_number(own.low, -1e30, 1e30, where, "low"));
+    PTIE_TRY(ptie_check_number(own.high, own.low, 1e30, where, "high"));
+    return ptie_convert_recording(ctx->engine.pool, &own, progress);
+}

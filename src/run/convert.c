@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "run/convert.h"
+
+#include <string.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "io/recording.h"
+
+#define NAME_BYTES 64
+
+typedef struct conversion {
+    const ptie_convert_params *params;
+    ptie_recording *input;
+    ptie_writer *output;
+    ptie_rect roi;
+    int64_t frames;
+    float *frame; /* (H, W) as read; the rectangle is moved to its front */
+} conversion;
+
+static ptie_status choose_frames(conversion *c) {
+    const ptie_convert_params *p = c->params;
+    const int64_t recorded = ptie_io_info(c->input)->frames;
+    if (p->first >= recorded)
+        return PTIE_FAIL(PTIE_EINVAL, "%s: first frame out of range (expected 0..%lld, found %lld)",
+                         p->input, (long long)recorded - 1, (long long)p->first);
+    const int64_t available = (recorded - p->first - 1) / p->step + 1;
+    if (p->count > available)
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "%s: too few frames (expected %lld from frame %lld in steps of %lld, found %lld)",
+                         p->input, (long long)p->count, (long long)p->first, (long long)p->step,
+                         (long long)available);
+    c->frames = p->count ? p->count : available;
+    return PTIE_OK;
+}
+
+static ptie_status choose_pixels(conversion *c) {
+    const ptie_recording_info *info = ptie_io_info(c->input);
+    const ptie_rect roi = c->params->roi, none = {0};
+    if (memcmp(&roi, &none, sizeof roi) == 0) {
+        c->roi = (ptie_rect){0, 0, info->width_px, info->height_px};
+        return PTIE_OK;
+    }
+    if (roi.x_px < 0 || roi.y_px < 0 || roi.width_px < 1 || roi.height_px < 1 || roi.x_px >= info->width_px ||
+        roi.y_px >= info->height_px || roi.width_px > info->width_px - roi.x_px ||
+        roi.height_px > info->height_px - roi.y_px)
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "%s: rectangle outside the frame (expected inside %d x %d px, found %d,%d,%d,%d)",
+                         c->params->input, info->width_px, info->height_px, roi.x_px, roi.y_px, roi.width_px,
+                         roi.height_px);
+    c->roi = roi;
+    return PTIE_OK;
+}
+
+/* What the output says of itself. */
+static ptie_recording_info describe(const conversion *c) {
+    const ptie_convert_params *p = c->params;
+    ptie_recording_info info = *ptie_io_info(c->input);
+    info.width_px = c->roi.width_px;
+    info.height_px = c->roi.height_px;
+    info.frames = c->frames;
+    info.first_frame += p->first * info.frame_step;
+    if (c->frames > 1) {
+        info.frame_step *= p->step;
+        info.frame_rate_hz /= (double)p->step;
+    }
+    return info;
+}
+
+/* The last part of a data set's path, with '_' for what a name cannot have. */
+static void name_map(char name[NAME_BYTES], const ptie_recording_info *info) {
+    static const char letters[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    const char *slash = strrchr(info->dataset, '/');
+    const char *from = slash && slash[1] ? slash + 1 : "data";
+    size_t length = strnlen(from, NAME_BYTES - 1);
+    for (size_t i = 0; i < length; i++) name[i] = strchr(letters, from[i]) ? from[i] : '_';
+    name[length] = 0;
+}
+
+static ptie_status prepare(conversion *c, ptie_pool *pool) {
+    const ptie_convert_params *p = c->params;
+    char name[NAME_BYTES];
+    PTIE_TRY(ptie_output_differs(p->output, p->input));
+    PTIE_TRY(ptie_io_open(&c->input, p->input));
+    PTIE_TRY(choose_frames(c));
+    PTIE_TRY(choose_pixels(c));
+    const ptie_recording_info *info = ptie_io_info(c->input);
+    name_map(name, info);
+    PTIE_TRY(ptie_alloc_status(&c->frame, (size_t)info->width_px * (size_t)info->height_px,
+                               sizeof *c->frame, p->input));
+    return ptie_io_create(&c->output, &(ptie_writer_job){.path = p->output,
+                                                         .name = p->name ? p->name : name,
+                                                         .info = describe(c),
+                                                         .overwrite = p->overwrite,
+                                                         .source = p->input,
+                                                         .command = p->provenance,
+                                                         .compress = p->compress,
+                                                         .pool = pool,
+                                                         .low = p->low,
+                                                         .high = p->high});
+}
+
+/* Reads frame i of the output. */
+static ptie_status read_frame(conversion *c, int64_t i) {
+    const ptie_convert_params *p = c->params;
+    const size_t pitch = (size_t)ptie_io_info(c->input)->width_px, width = (size_t)c->roi.width_px;
+    PTIE_TRY(ptie_io_read(c->input, p->first + i * p->step, c->frame));
+    const float *from = c->frame + (size_t)c->roi.y_px * pitch + (size_t)c->roi.x_px;
+    for (size_t y = 0; y < (size_t)c->roi.height_px; y++)
+        memmove(c->frame + y * width, from + y * pitch, width * sizeof *from);
+    return PTIE_OK;
+}
+
+static ptie_status copy_frames(conversion *c, ptie_progress progress) {
+    for (int64_t i = 0; i < c->frames; i++) {
+        PTIE_TRY(read_frame(c, i));
+        PTIE_TRY(ptie_io_append(c->output, c->frame));
+        PTIE_TRY(ptie_progress_report(progress, (uint64_t)i + 1, (uint64_t)c->frames, NULL));
+    }
+    ptie_writer *output = c->output;
+    c->output = NULL;
+    return ptie_io_complete(output);
+}
+
+ptie_status ptie_convert_recording(ptie_pool *pool, const ptie_convert_params *params,
+                                   ptie_progress progress) {
+    conversion c = {.params = params};
+    ptie_status status = prepare(&c, pool);
+    if (status == PTIE_OK) status = copy_frames(&c, progress);
+    ptie_io_discard(c.output);
+    ptie_io_close(c.input);
+    ptie_free(c.frame);
+    return status;
+}
