@@ -23,23 +23,19 @@ void ptie_optics_params_init(ptie_optics_params *params) {
     };
 }
 
-static ptie_status make_filter(float **out, const ptie_optics *optics,
-                               double (*response)(double k2, const void *context)) {
-    PTIE_TRY(ptie_alloc_status(out, ptie_fft_filter_floats(optics->fft), sizeof **out, "optics"));
-    ptie_fft_filter_fill(optics->fft, *out, optics->params.pixel_m, response, optics);
-    return PTIE_OK;
-}
-
 static ptie_status prepare(ptie_optics *optics) {
     const ptie_optics_params *p = &optics->params;
     if (p->propagation == PTIE_TIE_STENCIL) return PTIE_OK;
     PTIE_TRY(ptie_fft_create(&optics->fft,
                              p->boundary == PTIE_MIRROR ? PTIE_FFT_MIRROR : PTIE_FFT_REAL,
                              p->width_px, p->height_px));
-    if (p->propagation == PTIE_TIE_SPECTRAL)
-        return make_filter(&optics->signal, optics, ptie_linear_response);
-    PTIE_TRY(make_filter(&optics->h_re, optics, ptie_angular_response_re));
-    return make_filter(&optics->h_im, optics, ptie_angular_response_im);
+    if (p->propagation == PTIE_ANGULAR_SPECTRUM)
+        return ptie_propagator_fill(&optics->propagator, optics->fft, p->pixel_m, p->wavelength_m,
+                                    p->defocus_m);
+    PTIE_TRY(ptie_alloc_status(&optics->signal, ptie_fft_filter_floats(optics->fft), sizeof *optics->signal,
+                               "optics"));
+    ptie_fft_filter_fill(optics->fft, optics->signal, p->pixel_m, ptie_linear_response, optics);
+    return PTIE_OK;
 }
 
 ptie_status ptie_optics_plan(ptie_optics **out, const ptie_optics_params *params) {
@@ -60,26 +56,24 @@ void ptie_optics_free(ptie_optics *optics) {
     if (!optics) return;
     ptie_fft_free(optics->fft);
     ptie_free(optics->signal);
-    ptie_free(optics->h_re);
-    ptie_free(optics->h_im);
+    ptie_propagator_clear(&optics->propagator);
     ptie_free(optics);
 }
 
 static ptie_optics_work carve(const ptie_optics *optics, ptie_slicer *slicer) {
     const size_t pixels = (size_t)optics->params.width_px * (size_t)optics->params.height_px;
     ptie_optics_work work = {.image = ptie_slice(slicer, pixels, sizeof(float))};
-    if (!optics->fft) return work;
-    const size_t spectrum = ptie_fft_spectrum_floats(optics->fft);
-    work.spectrum = ptie_slice(slicer, spectrum, sizeof(float));
-    if (optics->params.propagation != PTIE_ANGULAR_SPECTRUM) return work;
-    work.u_re = ptie_slice(slicer, spectrum, sizeof(float));
-    work.u_im = ptie_slice(slicer, spectrum, sizeof(float));
+    if (optics->fft)
+        work.spectrum = ptie_slice(slicer, ptie_fft_spectrum_floats(optics->fft), sizeof(float));
     return work;
 }
 
 size_t ptie_optics_scratch(const ptie_optics *optics) {
     ptie_slicer slicer = {0};
-    carve(optics, &slicer);
+    if (optics->params.propagation == PTIE_ANGULAR_SPECTRUM)
+        ptie_wave_slice(optics->fft, &slicer);
+    else
+        carve(optics, &slicer);
     return slicer.used;
 }
 
@@ -144,9 +138,12 @@ ptie_status ptie_optics_defocus(const ptie_optics *optics, float *i_plus, float 
     assert((uintptr_t)scratch % PTIE_ALIGNMENT == 0);
     PTIE_TRY(ptie_image_finite(phase_rad, p->width_px, p->height_px, "phase_rad"));
     if (i_zero) PTIE_TRY(check_intensity(i_zero, p));
-    const ptie_optics_work work = carve(optics, &(ptie_slicer){.base = scratch});
-    if (p->propagation != PTIE_ANGULAR_SPECTRUM)
-        return linear_defocus(optics, i_plus, i_minus, phase_rad, i_zero, &work);
-    ptie_angular_defocus(optics, i_plus, i_minus, phase_rad, i_zero, &work);
-    return PTIE_OK;
+    ptie_slicer slicer = {.base = scratch};
+    if (p->propagation == PTIE_ANGULAR_SPECTRUM) {
+        const ptie_wave wave = ptie_wave_slice(optics->fft, &slicer);
+        ptie_angular_defocus(optics, i_plus, i_minus, phase_rad, i_zero, &wave);
+        return PTIE_OK;
+    }
+    const ptie_optics_work work = carve(optics, &slicer);
+    return linear_defocus(optics, i_plus, i_minus, phase_rad, i_zero, &work);
 }

@@ -3,21 +3,19 @@
 #ifndef PTIE_OPTICS_PLAN_H
 #define PTIE_OPTICS_PLAN_H
 
-#include "fft/fft.h"
+#include "fft/propagate.h"
 #include "optics/optics.h"
 
 struct ptie_optics {
     ptie_optics_params params;
     ptie_fft *fft;      /* of the boundary; NULL for the stencil */
     float *signal;      /* PTIE_TIE_SPECTRAL: spectrum of dz dI/dz per spectrum of phase */
-    float *h_re, *h_im; /* PTIE_ANGULAR_SPECTRUM: transfer function to +defocus */
+    ptie_propagator propagator; /* PTIE_ANGULAR_SPECTRUM: to +defocus */
 };
 
-/* Parts of a run's scratch; NULL where a propagation has no use for one. */
+/* Scratch of a linear run; spectrum: NULL for the stencil. */
 typedef struct ptie_optics_work {
-    float *image;
-    float *spectrum;    /* work space of every transform */
-    float *u_re, *u_im; /* spectra of the parts of the wave in focus */
+    float *image, *spectrum;
 } ptie_optics_work;
 
 /* Linear TIE (M1)-(M3).  work->image (out): dz dI/dz for unit intensity. */
@@ -30,10 +28,6 @@ double ptie_linear_response(double k2, const void *context);
 
 /* Angular spectrum (M7).  The outputs may be the inputs. */
 void ptie_angular_defocus(const ptie_optics *optics, float *i_plus, float *i_minus,
-                          const float *phase_rad, const float *i_zero,
-                          const ptie_optics_work *work);
-/* Responses of ptie_optics.h_re and h_im; context: the plan. */
-double ptie_angular_response_re(double k2, const void *context);
-double ptie_angular_response_im(double k2, const void *context);
+                          const float *phase_rad, const float *i_zero, const ptie_wave *wave);
 
 #endif
