@@ -13,9 +13,16 @@
 
 #define PTIE_MAX_PLANES 8
 
-/* How the phase is found from dI/dz. */
+/* How the phase is found from dI/dz.  The first is for light that is even but for fine structure; the others
+   take the intensity as it is, apertures with nothing outside included. */
 typedef enum ptie_solver_method {
-    PTIE_SOLVE_DIRECT = 0 /* one inverse Laplacian of (dI/dz) / I (M5) */
+    PTIE_SOLVE_DIRECT = 0,        /* one inverse Laplacian of (dI/dz) / I (M5) */
+    PTIE_SOLVE_MAX_INTENSITY = 1, /* one inverse Laplacian of (dI/dz) / max I: the first step of US-TIE (M11) */
+    PTIE_SOLVE_TWO_POISSON = 2,   /* Teague's two inverse Laplacians, as Paganin and Nugent 1998 (M12) */
+    PTIE_SOLVE_ITERATIVE_DCT = 3, /* that, iterated on what it leaves of dI/dz (M13); mirror boundary.  Fast, but
+                                     diverges where the intensity falls to 0 inside the aperture */
+    PTIE_SOLVE_US_TIE = 4         /* max-intensity steps, iterated on what they leave of dI/dz (M11, M13):
+                                     converges for any intensity */
 } ptie_solver_method;
 
 typedef struct ptie_solver_params {
@@ -38,13 +45,20 @@ typedef struct ptie_solver_params {
     /* Tikhonov: 1/k^2 becomes k^2/(k^4 + k_c^4) with k_c = 2 pi / cutoff_m.  Structures finer than the
        cut-off keep their amplitude (the factor is 1 - (k_c/k)^4 + ...); coarser ones fade.  0 = off. */
     double cutoff_m;
+    int32_t max_iterations;      /* of an iterating method, 1..100000, default 100; (M13) has what else stops it */
+    /* Where two Poisson equations divide by I0: pixels below this share of the brightest are raised to it
+       (0..1); 0 (default) takes what lies below 1 % for outside of the light and gives it the mean. */
+    double intensity_floor;
+    /* Where there is light: height x width, 1 = light, 0 = opaque (a nozzle); NULL (default) = everywhere.
+       Opaque pixels are no part of the means, have neither light nor dI/dz, and phase 0.  The plan copies it. */
+    const uint8_t *mask;
 } ptie_solver_params;
 
 /* What a run says of itself. */
 typedef struct ptie_solver_report {
     int32_t iterations; /* 1 for a direct method */
-    double residual;    /* largest of dI/dz left unexplained, relative to the largest measured; 0 for a direct
-                           method, which leaves none to its own model */
+    double residual;    /* largest dI/dz left unexplained by diffraction, relative to the largest measured; 0 for
+                           a method of one step, which does not look */
 } ptie_solver_report;
 
 typedef struct ptie_solver ptie_solver;
@@ -62,13 +76,14 @@ PTIE_API size_t ptie_solver_scratch_bytes(const ptie_solver *solver);
    contiguous, in the order of params.z_m.  phase_rad may be one of them.  report: NULL is fine.
    No allocation; const plan: concurrent runs with different scratch are fine.  Errors: PTIE_EINVAL (a plane
    is missing, scratch not 64-byte aligned), PTIE_ENUMERIC (not finite, or the intensity to divide by is not
-   positive: names the plane and the pixel). */
+   positive: names the plane and the pixel; an iteration that diverged). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_solver_run(const ptie_solver *solver, float *phase_rad,
                                                     const float *const *planes, void *scratch,
                                                     ptie_solver_report *report);
 
 /* Standard deviation of the reconstructed phase (rad, over the frame) caused by white noise of relative
-   standard deviation `sigma` in each plane: the closed form (M8), summed over this plan's filter. */
+   standard deviation `sigma` in each plane: the closed form (M8), summed over this plan's filter.  For
+   even light; darker regions are noisier by max I / I. */
 PTIE_API double ptie_solver_noise_rad(const ptie_solver *solver, double sigma);
 
 #endif

@@ -17,7 +17,9 @@ static ptie_status check_params(const ptie_solver_params *p, const char *where) 
         PTIE_TRY(ptie_check_number(p->z_m[i], -1e3, 1e3, where, "z_m"));
     PTIE_TRY(ptie_check_integer(p->polynomial_order, 0, p->plane_count - 1, where, "polynomial_order"));
     PTIE_TRY(ptie_check_integer(p->boundary, PTIE_PERIODIC, PTIE_MIRROR, where, "boundary"));
-    PTIE_TRY(ptie_check_integer(p->method, PTIE_SOLVE_DIRECT, PTIE_SOLVE_DIRECT, where, "method"));
+    PTIE_TRY(ptie_check_integer(p->method, PTIE_SOLVE_DIRECT, PTIE_SOLVE_US_TIE, where, "method"));
+    PTIE_TRY(ptie_check_integer(p->max_iterations, 1, 100000, where, "max_iterations"));
+    PTIE_TRY(ptie_check_number(p->intensity_floor, 0, 1, where, "intensity_floor"));
     return ptie_check_number(p->cutoff_m, 0, 1e6, where, "cutoff_m");
 }
 

@@ -70,6 +70,7 @@ ptie_solver_params ptie_rig_solver(const ptie_rig *rig, int32_t width_px, int32_
         .wavelength_m = rig->wavelength_m,
         .boundary = rig->boundary,
         .cutoff_m = rig->cutoff_m,
+        .max_iterations = 100,
     };
     p.plane_count = ptie_rig_planes(rig, role, p.z_m);
     return p;

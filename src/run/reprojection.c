@@ -82,7 +82,7 @@ ptie_status ptie_reprojection_measure(const ptie_reprojection *r, int32_t worker
                                       const float *const *planes) {
     const work w = carve(r, &(ptie_slicer){.base = r->scratch + (size_t)worker * r->bytes});
     const double scale = 1 / (2 * r->defocus_m);
-    PTIE_TRY(ptie_tie_derivative(w.measured, &r->weights, planes, r->width, r->height));
+    PTIE_TRY(ptie_tie_derivative(w.measured, &r->weights, planes));
     for (size_t n = 0; n < count; n++) {
         PTIE_TRY(ptie_optics_defocus(r->optics, w.plus, w.minus, maps[n], NULL, w.optics));
         for (size_t i = 0; i < r->pixels; i++)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "tie/derivative.h"
 
-#include <assert.h>
+#include <math.h>
+#include <string.h>
 
 #include "base/clones.h"
 #include "base/image.h"
@@ -29,6 +30,18 @@ PTIE_CLONES static double mean_of_planes(const float *const *planes, int32_t cou
     return sum / ((double)count * (double)pixels);
 }
 
+static double mean_in_light(const float *const *planes, int32_t count, const uint8_t *mask, size_t pixels) {
+    if (!mask) return mean_of_planes(planes, count, pixels);
+    double sum = 0;
+    size_t lit = 0;
+    for (size_t i = 0; i < pixels; i++)
+        if (mask[i]) {
+            lit++;
+            for (int32_t p = 0; p < count; p++) sum += (double)planes[p][i];
+        }
+    return sum / ((double)count * (double)lit);
+}
+
 PTIE_CLONES static void add_difference(double *sum, const float *plane, const float *base, double weight,
                                        size_t count) {
     for (size_t i = 0; i < count; i++) sum[i] += weight * ((double)plane[i] - (double)base[i]);
@@ -42,56 +55,96 @@ PTIE_CLONES static void narrow(float *out, const double *sum, size_t count) {
     for (size_t i = 0; i < count; i++) out[i] = (float)sum[i];
 }
 
-/* The weights sum to 0, so differences from one plane are weighed: what is common to the planes cancels
-   exactly.  divisor: of every weight. */
+/* sum (out): of weight / divisor times plane; the weights sum to 0, so differences from one plane are
+   weighed: what is common to the planes cancels exactly. */
+static void weigh_block(double *sum, const ptie_tie_weights *w, const float *const *planes, double divisor,
+                        size_t start, size_t count) {
+    memset(sum, 0, count * sizeof *sum);
+    for (int32_t p = 0; p < w->count; p++)
+        if (p != w->base)
+            add_difference(sum, planes[p] + start, planes[w->base] + start, w->weight[p] / divisor, count);
+}
+
+/* pixelwise: divided by the base as well. */
 static void weigh_planes(float *derivative, const ptie_tie_weights *w, const float *const *planes,
-                         double divisor, size_t pixels) {
+                         double divisor, bool pixelwise) {
+    const size_t pixels = (size_t)w->width_px * (size_t)w->height_px;
     for (size_t start = 0; start < pixels; start += BLOCK) {
         const size_t count = pixels - start < BLOCK ? pixels - start : BLOCK;
-        const float *base = planes[w->base] + start;
-        double sum[BLOCK] = {0};
-        for (int32_t p = 0; p < w->count; p++)
-            if (p != w->base) add_difference(sum, planes[p] + start, base, w->weight[p] / divisor, count);
-        if (w->pixelwise)
-            divide(derivative + start, sum, base, count);
+        double sum[BLOCK];
+        weigh_block(sum, w, planes, divisor, start, count);
+        if (pixelwise)
+            divide(derivative + start, sum, planes[w->base] + start, count);
         else
             narrow(derivative + start, sum, count);
     }
+    ptie_tie_blank(derivative, w->mask, pixels);
 }
 
-static ptie_status check_divisor(const float *base, int32_t plane, size_t width, size_t height) {
-    for (size_t i = 0; i < width * height; i++)
-        if (!(base[i] > 0))
+void ptie_tie_blank(float *image, const uint8_t *mask, size_t pixels) {
+    for (size_t i = 0; mask && i < pixels; i++)
+        if (!mask[i]) image[i] = 0;
+}
+
+static ptie_status check_divisor(const ptie_tie_weights *w, const float *base) {
+    const size_t width = (size_t)w->width_px, pixels = width * (size_t)w->height_px;
+    for (size_t i = 0; i < pixels; i++)
+        if (!(base[i] > 0) && (!w->mask || w->mask[i]))
             return PTIE_FAIL(PTIE_ENUMERIC,
                              "plane %d (in focus or reference): intensity to divide by is not positive "
                              "(at x=%zu, y=%zu; expected > 0, found %g)",
-                             plane, i % width, i / width, (double)base[i]);
+                             w->base, i % width, i / width, (double)base[i]);
     return PTIE_OK;
 }
 
-static ptie_status check_finite(const ptie_tie_weights *w, const float *const *planes, int32_t width,
-                                int32_t height) {
+static ptie_status check_finite(const ptie_tie_weights *w, const float *const *planes) {
     for (int32_t p = 0; p < w->count; p++) {
         char name[64];
         ptie_print(name, sizeof name, "plane %d (z = %g m)", p, w->z_m[p]);
-        PTIE_TRY(ptie_image_finite(planes[p], width, height, name));
+        PTIE_TRY(ptie_image_finite(planes[p], w->width_px, w->height_px, name));
     }
     return PTIE_OK;
 }
 
-ptie_status ptie_tie_derivative(float *derivative, const ptie_tie_weights *weights,
-                                const float *const *planes, int32_t width_px, int32_t height_px) {
-    const size_t pixels = (size_t)width_px * (size_t)height_px;
-    PTIE_TRY(check_finite(weights, planes, width_px, height_px));
-    double divisor = 1;
-    if (weights->pixelwise)
-        PTIE_TRY(check_divisor(planes[weights->base], weights->base, (size_t)width_px, (size_t)height_px));
-    else {
-        divisor = mean_of_planes(planes, weights->count, pixels);
-        if (!(divisor > 0))
-            return PTIE_FAIL(PTIE_ENUMERIC,
-                             "planes: mean intensity is not positive (expected > 0, found %g)", divisor);
+static ptie_status check_light(double light, const char *what) {
+    if (light > 0) return PTIE_OK;
+    return PTIE_FAIL(PTIE_ENUMERIC, "planes: %s intensity is not positive (expected > 0, found %g)", what,
+                     light);
+}
+
+ptie_status ptie_tie_derivative(float *derivative, const ptie_tie_weights *w, const float *const *planes) {
+    PTIE_TRY(check_finite(w, planes));
+    if (w->pixelwise) {
+        PTIE_TRY(check_divisor(w, planes[w->base]));
+        weigh_planes(derivative, w, planes, 1, true);
+        return PTIE_OK;
     }
-    weigh_planes(derivative, weights, planes, divisor, pixels);
+    const double mean =
+        mean_in_light(planes, w->count, w->mask, (size_t)w->width_px * (size_t)w->height_px);
+    PTIE_TRY(check_light(mean, "mean"));
+    weigh_planes(derivative, w, planes, mean, false);
+    return PTIE_OK;
+}
+
+/* The plane in focus, or the mean of all. */
+static void set_light(float *light, const ptie_tie_weights *w, const float *const *planes, size_t pixels) {
+    for (size_t i = 0; i < pixels; i++) {
+        double sum = (double)planes[w->base][i];
+        for (int32_t p = 0; p < w->count && !w->pixelwise; p++)
+            if (p != w->base) sum += (double)planes[p][i];
+        light[i] = (float)fmax(0, w->pixelwise ? sum : sum / w->count);
+    }
+    ptie_tie_blank(light, w->mask, pixels);
+}
+
+ptie_status ptie_tie_slope(float *slope, float *light, const ptie_tie_weights *w,
+                           const float *const *planes) {
+    const size_t pixels = (size_t)w->width_px * (size_t)w->height_px;
+    PTIE_TRY(check_finite(w, planes));
+    set_light(light, w, planes, pixels);
+    const double brightest = (double)ptie_image_extent(light, pixels).high;
+    PTIE_TRY(check_light(brightest, "largest"));
+    weigh_planes(slope, w, planes, brightest, false);
+    for (size_t i = 0; i < pixels; i++) light[i] = (float)((double)light[i] / brightest);
     return PTIE_OK;
 }

@@ -8,17 +8,9 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "fft/fft.h"
-#include "tie/derivative.h"
+#include "tie/plan.h"
 
 #define TWO_PI 6.283185307179586476925
-
-struct ptie_solver {
-    ptie_solver_params params;
-    ptie_tie_weights weights;
-    ptie_fft *fft;
-    float *filter; /* rad m: phase per (dI/dz) / I */
-};
 
 void ptie_solver_params_init(ptie_solver_params *params) {
     *params = (ptie_solver_params){
@@ -30,6 +22,7 @@ void ptie_solver_params_init(ptie_solver_params *params) {
         .plane_count = 2,
         .z_m = {10e-3, -10e-3},
         .boundary = PTIE_PERIODIC,
+        .max_iterations = 100,
     };
 }
 
@@ -40,16 +33,54 @@ static double inverse_response(double k2, const void *context) {
     return k2 > 0 ? TWO_PI / p->wavelength_m * k2 / (k2 * k2 + pow(cutoff, 4)) : 0;
 }
 
+static double forward_response(double k2, const void *context) {
+    return ((const ptie_solver_params *)context)->wavelength_m / TWO_PI * k2;
+}
+
+static ptie_status make_filter(float **out, const ptie_solver *solver,
+                               double (*response)(double k2, const void *context)) {
+    PTIE_TRY(ptie_alloc_status(out, ptie_fft_filter_floats(solver->fft), sizeof **out, "solver"));
+    ptie_fft_filter_fill(solver->fft, *out, solver->params.pixel_m, response, &solver->params);
+    return PTIE_OK;
+}
+
+static ptie_status copy_mask(ptie_solver *solver) {
+    ptie_solver_params *p = &solver->params;
+    if (!p->mask) return PTIE_OK;
+    const size_t pixels = ptie_solver_pixels(solver);
+    if (!memchr(p->mask, 1, pixels))
+        return PTIE_FAIL(PTIE_EINVAL, "solver: the mask leaves no light (expected a pixel that is 1)");
+    PTIE_TRY(ptie_alloc_status(&solver->mask, pixels, 1, "solver"));
+    memcpy(solver->mask, p->mask, pixels);
+    p->mask = solver->mask;
+    return PTIE_OK;
+}
+
+static ptie_status prepare_propagators(ptie_solver *solver) {
+    const ptie_solver_params *p = &solver->params;
+    const ptie_tie_weights *w = &solver->weights;
+    for (int32_t i = 0; i < w->count; i++)
+        if (!w->pixelwise || i != w->base)
+            PTIE_TRY(ptie_propagator_fill(&solver->propagator[i], solver->fft, p->pixel_m, p->wavelength_m,
+                                          p->z_m[i]));
+    return PTIE_OK;
+}
+
 static ptie_status prepare(ptie_solver *solver) {
     const ptie_solver_params *p = &solver->params;
+    if (p->method == PTIE_SOLVE_ITERATIVE_DCT && p->boundary != PTIE_MIRROR)
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "solver: the iterative DCT has the mirror boundary (expected PTIE_MIRROR, found %d)",
+                         (int)p->boundary);
+    PTIE_TRY(copy_mask(solver));
     PTIE_TRY(ptie_tie_weigh(&solver->weights, p));
     PTIE_TRY(ptie_fft_create(&solver->fft,
                              p->boundary == PTIE_MIRROR ? PTIE_FFT_MIRROR : PTIE_FFT_REAL,
                              p->width_px, p->height_px));
-    PTIE_TRY(ptie_alloc_status(&solver->filter, ptie_fft_filter_floats(solver->fft),
-                               sizeof *solver->filter, "solver"));
-    ptie_fft_filter_fill(solver->fft, solver->filter, p->pixel_m, inverse_response, p);
-    return PTIE_OK;
+    PTIE_TRY(make_filter(&solver->inverse, solver, inverse_response));
+    if (p->method == PTIE_SOLVE_DIRECT) return make_filter(&solver->forward, solver, forward_response);
+    if (ptie_solver_divides_by_light(solver)) PTIE_TRY(ptie_poisson_prepare(&solver->poisson, p));
+    return prepare_propagators(solver);
 }
 
 ptie_status ptie_tie_plan(ptie_solver **out, const ptie_solver_params *params) {
@@ -69,7 +100,11 @@ ptie_status ptie_tie_plan(ptie_solver **out, const ptie_solver_params *params) {
 void ptie_solver_free(ptie_solver *solver) {
     if (!solver) return;
     ptie_fft_free(solver->fft);
-    ptie_free(solver->filter);
+    ptie_free(solver->inverse);
+    ptie_free(solver->forward);
+    ptie_poisson_clear(&solver->poisson);
+    for (int32_t i = 0; i < PTIE_MAX_PLANES; i++) ptie_propagator_clear(&solver->propagator[i]);
+    ptie_free(solver->mask);
     ptie_free(solver);
 }
 
@@ -83,29 +118,57 @@ typedef struct work {
 
 static work carve(const ptie_solver *solver, ptie_slicer *slicer) {
     work w;
-    w.image = ptie_slice(slicer, ptie_fft_image_floats(solver->fft), sizeof(float));
+    w.image = ptie_slice(slicer, ptie_solver_pixels(solver), sizeof(float));
     w.spectrum = ptie_slice(slicer, ptie_fft_spectrum_floats(solver->fft), sizeof(float));
     return w;
 }
 
 size_t ptie_tie_scratch(const ptie_solver *solver) {
+    if (solver->params.method != PTIE_SOLVE_DIRECT) return ptie_tie_iterate_scratch(solver);
     ptie_slicer slicer = {0};
     carve(solver, &slicer);
     return slicer.used;
 }
 
+static void filter_image(const ptie_solver *solver, const float *filter, float *image, float *spectrum) {
+    ptie_fft_forward(solver->fft, spectrum, image);
+    ptie_fft_filter_apply(solver->fft, spectrum, filter);
+    ptie_fft_inverse(solver->fft, image, spectrum);
+}
+
+void ptie_tie_invert(const ptie_solver *solver, float *image, float *spectrum) {
+    filter_image(solver, solver->inverse, image, spectrum);
+}
+
+void ptie_tie_level(const ptie_solver *solver, float *phase_rad) {
+    const uint8_t *mask = solver->mask;
+    const size_t pixels = ptie_solver_pixels(solver);
+    double sum = 0;
+    size_t lit = 0;
+    for (size_t i = 0; i < pixels; i++)
+        if (!mask || mask[i]) sum += (double)phase_rad[i], lit++;
+    const float mean = (float)(sum / (double)lit);
+    for (size_t i = 0; i < pixels; i++) phase_rad[i] -= mean;
+    ptie_tie_blank(phase_rad, mask, pixels);
+}
+
+static ptie_status solve_direct(const ptie_solver *solver, float *phase_rad, const float *const *planes,
+                                void *scratch, ptie_solver_report *report) {
+    const work w = carve(solver, &(ptie_slicer){.base = scratch});
+    PTIE_TRY(ptie_tie_derivative(w.image, &solver->weights, planes));
+    ptie_tie_invert(solver, w.image, w.spectrum);
+    memcpy(phase_rad, w.image, ptie_solver_pixels(solver) * sizeof *phase_rad);
+    if (solver->mask) ptie_tie_level(solver, phase_rad);
+    if (report) *report = (ptie_solver_report){.iterations = 1};
+    return PTIE_OK;
+}
+
 ptie_status ptie_tie_solve(const ptie_solver *solver, float *phase_rad, const float *const *planes,
                            void *scratch, ptie_solver_report *report) {
     assert((uintptr_t)scratch % PTIE_ALIGNMENT == 0);
-    const work w = carve(solver, &(ptie_slicer){.base = scratch});
-    const ptie_solver_params *p = &solver->params;
-    PTIE_TRY(ptie_tie_derivative(w.image, &solver->weights, planes, p->width_px, p->height_px));
-    ptie_fft_forward(solver->fft, w.spectrum, w.image);
-    ptie_fft_filter_apply(solver->fft, w.spectrum, solver->filter);
-    ptie_fft_inverse(solver->fft, w.image, w.spectrum);
-    memcpy(phase_rad, w.image, ptie_fft_image_floats(solver->fft) * sizeof *phase_rad);
-    if (report) *report = (ptie_solver_report){.iterations = 1};
-    return PTIE_OK;
+    if (solver->params.method == PTIE_SOLVE_DIRECT)
+        return solve_direct(solver, phase_rad, planes, scratch, report);
+    return ptie_tie_iterate(solver, phase_rad, planes, scratch, report);
 }
 
 /* White noise of variance v per pixel of dI/dz leaves v times the filter's mean power (M8). */
@@ -113,5 +176,5 @@ double ptie_tie_noise_rad(const ptie_solver *solver, double sigma) {
     const ptie_tie_weights *w = &solver->weights;
     double squares = 0;
     for (int32_t i = 0; i < w->count; i++) squares += w->weight[i] * w->weight[i];
-    return sigma * sqrt(squares * ptie_fft_filter_power(solver->fft, solver->filter));
+    return sigma * sqrt(squares * ptie_fft_filter_power(solver->fft, solver->inverse));
 }

@@ -60,7 +60,11 @@ ptie_status ptie_tie_weigh(ptie_tie_weights *weights, const ptie_solver_params *
     const int32_t count = params->plane_count;
     const double *z = params->z_m;
     PTIE_TRY(check_distinct(z, count));
-    *weights = (ptie_tie_weights){.count = count, .base = nearest_to_focus(z, count)};
+    *weights = (ptie_tie_weights){.width_px = params->width_px,
+                                  .height_px = params->height_px,
+                                  .mask = params->mask,
+                                  .count = count,
+                                  .base = nearest_to_focus(z, count)};
     weights->pixelwise = fabs(z[weights->base]) < LEAST_STEP_M;
     for (int32_t i = 0; i < count; i++) weights->z_m[i] = z[i];
     const int32_t order = params->polynomial_order > 0 ? params->polynomial_order : count > 2 ? 2 : 1;

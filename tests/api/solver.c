@@ -39,6 +39,7 @@ static void params_init_sets_the_documented_defaults(void **state) {
     assert_int_equal(p.struct_size, sizeof p);
     assert_true(p.width_px == 256 && p.height_px == 256 && p.pixel_m == 20e-6);
     assert_true(p.wavelength_m == 532e-9 && p.boundary == PTIE_PERIODIC && p.cutoff_m == 0);
+    assert_true(p.method == PTIE_SOLVE_DIRECT && p.max_iterations == 100 && !p.mask);
     assert_true(p.plane_count == 2 && p.z_m[0] == 10e-3 && p.z_m[1] == -10e-3);
 }
 
@@ -71,6 +72,15 @@ static void create_checks_every_parameter(void **state) {
     refuse(*state, p, "polynomial_order is out of range (expected 0..1, found 2)");
     p = good, p.method = (ptie_solver_method)99;
     refuse(*state, p, "method is out of range");
+    p = good, p.method = PTIE_SOLVE_ITERATIVE_DCT;
+    refuse(*state, p, "the iterative DCT has the mirror boundary");
+    p = good, p.max_iterations = 0;
+    refuse(*state, p, "max_iterations is out of range");
+    p = good, p.intensity_floor = 1.5;
+    refuse(*state, p, "intensity_floor is out of range");
+    static uint8_t dark[256 * 256];
+    p = good, p.mask = dark;
+    refuse(*state, p, "the mask leaves no light");
     p = good, p.boundary = (ptie_boundary)-1;
     refuse(*state, p, "boundary is out of range");
     p = good, p.cutoff_m = -1;

@@ -280,7 +280,7 @@ static void polynomials_are_exact_for_any_set_of_planes(void **state) {
             params.polynomial_order = order;
             ptie_tie_weights weights;
             assert_ok(ptie_tie_weigh(&weights, &params));
-            assert_ok(ptie_tie_derivative(derivative, &weights, planes, W, H));
+            assert_ok(ptie_tie_derivative(derivative, &weights, planes));
             double size = 0; /* sum of |w|: rounding of the images, 6e-8 of 5 each, divided by 5 */
             for (int32_t p = 0; p < count; p++) size += fabs(weights.weight[p]);
             for (int32_t i = 0; i < PIXELS; i++)
