@@ -18,6 +18,11 @@ static const char examples[] =
     "  # a shock front in real units, seen by diffraction\n"
     "  ptie simulate shock -o shock.h5 --family physical \\\n"
     "      --propagation angular-spectrum --boundary mirror\n\n"
+    "  # what a polarisation camera would have written: MRAW, with a no-flow and a\n"
+    "  # dark recording, the truth and the rig beside it\n"
+    "  ptie simulate jet -o lab.mraw --family physical --size 512 \\\n"
+    "      --propagation angular-spectrum --boundary mirror \\\n"
+    "      --camera examples/camera.ini\n\n"
     "  # every flow there is, as one figure\n"
     "  ptie simulate --gallery gallery.png\n";
 
@@ -25,13 +30,17 @@ static const char notes[] =
     "MORPHOLOGY is one of: jet, eddies, front, pockets, fan, diffusion, shock,\n"
     "combustion, plasma, random, nozzle; or mix, several of them composed.\n\n"
     "The recording holds /entry/data/plus and /entry/data/minus (intensity relative\n"
-    "to its mean) and /entry/truth/phase (rad).\n";
+    "to its mean) and /entry/truth/phase (rad).\n\n"
+    "With --camera it holds counts, in the format of FILE's ending if the camera has\n"
+    "a mosaic. Beside it: FILE_reference and FILE_dark, FILE_truth.h5, the rig as a\n"
+    "lab knows it and, as FILE_true.ini, as a perfect calibration would find it.\n";
 
 typedef struct settings {
     compute_options compute;
     ptie_simulate_params params;
     frame_size size;
-    const char *gallery;
+    const char *gallery, *camera_path;
+    ptie_camera_params camera;
     char rig[PATH_BYTES]; /* beside the recording unless named */
     char *provenance;
 } settings;
@@ -41,7 +50,7 @@ static int parse(settings *s, int argc, char **argv) {
     int family = (int)p->flow.family, boundary = (int)p->boundary,
         propagation = (int)p->propagation;
     const option options[] = {
-        {'o', "output", OPTION_TEXT, &p->output, "FILE", .help = "recording to write (.h5)"},
+        {'o', "output", OPTION_TEXT, &p->output, "FILE", .help = "recording to write (.h5; from a mosaic also .mraw and others)"},
         {0, "rig-out", OPTION_TEXT, &p->rig, "FILE",
          .help = "rig file to write; if not given, beside the recording (.ini)"},
         {0, "gallery", OPTION_TEXT, &s->gallery, "FILE",
@@ -53,6 +62,12 @@ static int parse(settings *s, int argc, char **argv) {
         {0, "size", OPTION_SIZE, &s->size, "N or WxH", .help = "frame size in pixels"},
         {0, "noise", OPTION_QUANTITY, &p->noise, "SHARE", .quantity = PTIE_NUMBER,
          .help = "standard deviation of the camera noise, relative to the mean intensity"},
+        {0, "camera", OPTION_TEXT, &s->camera_path, "FILE",
+         .help = "camera file (.ini): counts instead of intensities; --noise does not count then"},
+        {0, "reference-frames", OPTION_INT32, &p->reference_frames, "N", .low = 0, .high = 1000000,
+         .help = "with --camera: frames of the no-flow recording"},
+        {0, "dark-frames", OPTION_INT32, &p->dark_frames, "N", .low = 0, .high = 1000000,
+         .help = "with --camera: frames of the dark recording"},
         {0, "family", OPTION_CHOICE, &family, "NAME", .choices = families,
          .help = "kind of flow model"},
         {0, "amplitude", OPTION_QUANTITY, &p->amplitude_rad, "ANGLE", .quantity = PTIE_ANGLE,
@@ -76,7 +91,7 @@ static int parse(settings *s, int argc, char **argv) {
         .name = "simulate",
         .purpose = "Simulates a camera recording of a moving flow, with its truth.",
         .examples = examples,
-        .synopsis = "MORPHOLOGY -o FILE.h5 [options]\n  ptie simulate --gallery FILE.png [options]",
+        .synopsis = "MORPHOLOGY -o FILE [options]\n  ptie simulate --gallery FILE.png [options]",
         .notes = notes,
         .most = 1,
         .options = options,
@@ -107,6 +122,11 @@ static int simulate(settings *s, int argc, char **argv) {
     if (!p->rig && !replace_ending(s->rig, sizeof s->rig, p->output, ".ini"))
         return misused("simulate: name of the output too long");
     if (!p->rig) p->rig = s->rig;
+    if (s->camera_path) {
+        ptie_status status = ptie_camera_read(&s->camera, s->camera_path);
+        if (status != PTIE_OK) return failed(status);
+        p->camera = &s->camera;
+    }
     p->provenance = s->provenance = joined_command(argc, argv);
     ptie_status status = open_context(&ctx, &s->compute);
     if (status != PTIE_OK) return failed(status);

@@ -3,6 +3,7 @@
 #ifndef PTIE_SIMULATE_H
 #define PTIE_SIMULATE_H
 
+#include <ptie/camera.h>
 #include <ptie/flow.h>
 #include <ptie/optics.h>
 
@@ -17,11 +18,13 @@ typedef struct ptie_simulate_params {
     double defocus_m; /* planes at +defocus and -defocus, > 0, default 10e-3 */
     ptie_boundary boundary;
     ptie_propagation propagation;
-    double noise;           /* standard deviation relative to the mean intensity, >= 0, default 0.05 */
-    const char *output;     /* HDF5 file; required */
+    double noise;           /* standard deviation relative to the mean intensity, >= 0, default 0.05; no camera */
+    const char *output;     /* required; HDF5, with a mosaic camera any format that is written */
     const char *rig;        /* rig file that fits the recording, or NULL */
     const char *provenance; /* command line to keep in the file, or NULL */
     bool overwrite;
+    const ptie_camera_params *camera;      /* NULL: none */
+    int32_t reference_frames, dark_frames; /* with a camera; 0: no such recording; default 32 */
 } ptie_simulate_params;
 
 PTIE_API void ptie_simulate_params_init(ptie_simulate_params *params);
@@ -29,7 +32,14 @@ PTIE_API void ptie_simulate_params_init(ptie_simulate_params *params);
 /* Renders the flow at every frame's time, sends it through the optics, adds camera noise, and writes
      /entry/data/plus, /entry/data/minus  [T, H, W] float32, intensity relative to its mean
      /entry/truth/phase                   [T, H, W] float32, rad
-   and the rig, each whole or not at all.  The bytes do not depend on the number of threads.
+   and the rig, each whole or not at all.
+
+   With a camera the output holds its counts: one image per frame from a mosaic, else the data sets plus and minus.
+   Beside NAME.xyz, in the same format, NAME_reference.xyz (no flow) and NAME_dark.xyz (no light); NAME_truth.h5
+   with the phase, averaged over the mosaic's cells; and beside the rig, which says what a lab knows, RIG_true.ini with
+   what a perfect calibration would find.  The frame size is that of the sensor.
+
+   The bytes do not depend on the number of threads.
    Errors: PTIE_EINVAL, PTIE_ENAME (morphology), PTIE_EEXIST, PTIE_EIO, PTIE_ENOMEM, PTIE_ECANCELLED. */
 PTIE_API PTIE_NODISCARD ptie_status ptie_simulate(ptie_ctx *ctx, const ptie_simulate_params *params,
                                                   ptie_progress progress);

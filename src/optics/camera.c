@@ -35,7 +35,7 @@ void ptie_camera_params_init(ptie_camera_params *params) {
 }
 
 /* Malus' law with what a blocking polariser lets through (C4). */
-static double passed(const ptie_camera_params *p, int channel, double polarisation_rad) {
+double ptie_camera_passed(const ptie_camera_params *p, int channel, double polarisation_rad) {
     const double cosine = cos(p->angle_deg[channel] * PI / 180 - polarisation_rad);
     return cosine * cosine + (1 - cosine * cosine) / p->extinction;
 }
@@ -44,7 +44,7 @@ static double passed(const ptie_camera_params *p, int channel, double polarisati
 static void channel_responses(const ptie_camera_params *p, double plane_rad, double plane_gain,
                               float response[4]) {
     for (int c = 0; c < 4; c++) {
-        const double pass = p->layout == PTIE_CAMERA_MOSAIC ? p->gain[c] * passed(p, c, plane_rad) : 1;
+        const double pass = p->layout == PTIE_CAMERA_MOSAIC ? p->gain[c] * ptie_camera_passed(p, c, plane_rad) : 1;
         response[c] = (float)(p->full_well * p->exposure * plane_gain * pass);
     }
 }

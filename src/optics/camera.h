@@ -38,6 +38,9 @@ static inline int ptie_camera_channel(const ptie_camera_params *params, int32_t 
     return 2 * ((y + params->roi_y_px) & 1) + ((x + params->roi_x_px) & 1);
 }
 
+/* Share of light of this polarisation that a channel's polariser passes (C4). */
+double ptie_camera_passed(const ptie_camera_params *params, int channel, double polarisation_rad);
+
 /* Electrons to counts with noise, in place (C6, C7).  `sample` names the draw. */
 typedef struct ptie_noise_source {
     uint64_t seed, sample;

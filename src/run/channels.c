@@ -9,12 +9,6 @@ static const char *const side_names[] = {"left", "right"};
 static const char *const row_names[] = {"top", "bottom"};
 static const char *const quadrant_names[] = {"tl", "tr", "bl", "br"};
 
-/* Sony IMX250MZR and its kin; Photron CRYSTA, 0 45 90 135 clockwise. */
-static const struct {
-    const char *name;
-    int32_t angle_deg[PTIE_CHANNELS];
-} mosaics[] = {{"sony", {90, 45, 135, 0}}, {"crysta", {0, 45, 135, 90}}};
-
 int32_t ptie_channel_count(ptie_layout layout) {
     static const int32_t counts[] = {0, 4, 2, 2, 4};
     return counts[layout];
@@ -95,37 +89,3 @@ void ptie_mix_print(ptie_text *out, const ptie_rig *rig, const double mix[PTIE_C
         first = false;
     }
 }
-
-static const char *parse_mosaic(void *field, const char *text) {
-    static const char expected[] = "sony, crysta or four different angles such as 90 45 135 0";
-    int32_t *angle_deg = field;
-    for (size_t i = 0; i < sizeof mosaics / sizeof *mosaics; i++)
-        if (strcmp(text, mosaics[i].name) == 0) {
-            memcpy(angle_deg, mosaics[i].angle_deg, sizeof mosaics[i].angle_deg);
-            return NULL;
-        }
-    int32_t angle[PTIE_CHANNELS], used = 0;
-    if (sscanf(text, "%4d %4d %4d %4d%n", &angle[0], &angle[1], &angle[2], &angle[3], &used) != PTIE_CHANNELS ||
-        text[used])
-        return expected;
-    for (int c = 0; c < PTIE_CHANNELS; c++) {
-        if (angle[c] < 0 || angle[c] >= 180) return expected;
-        for (int d = 0; d < c; d++)
-            if (angle[c] == angle[d]) return expected;
-    }
-    memcpy(angle_deg, angle, sizeof angle);
-    return NULL;
-}
-
-static void print_mosaic(ptie_text *out, const void *field) {
-    const int32_t *angle_deg = field;
-    if (memcmp(angle_deg, (int32_t[PTIE_CHANNELS]){0}, sizeof(int32_t[PTIE_CHANNELS])) == 0) return;
-    for (size_t i = 0; i < sizeof mosaics / sizeof *mosaics; i++)
-        if (memcmp(angle_deg, mosaics[i].angle_deg, sizeof mosaics[i].angle_deg) == 0) {
-            ptie_text_append(out, "%s", mosaics[i].name);
-            return;
-        }
-    ptie_text_append(out, "%d %d %d %d", angle_deg[0], angle_deg[1], angle_deg[2], angle_deg[3]);
-}
-
-const ptie_ini_type ptie_mosaic_type = {parse_mosaic, print_mosaic};

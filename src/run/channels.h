@@ -19,7 +19,4 @@ const char *ptie_mix_parse(double mix[PTIE_CHANNELS], const ptie_rig *rig, const
                            char expected[128]);
 void ptie_mix_print(ptie_text *out, const ptie_rig *rig, const double mix[PTIE_CHANNELS]);
 
-/* int32_t[4]: "sony", "crysta", or four different angles of the sensor's top left cell, row by row. */
-extern const ptie_ini_type ptie_mosaic_type;
-
 #endif

@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "optics/mosaic.h"
 #include "run/channels.h"
 #include "run/planes.h"
 

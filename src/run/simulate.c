@@ -1,223 +1,169 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "run/simulate.h"
 
-#include <math.h>
+#include <stdio.h>
 #include <string.h>
-
-#include <ptie/version.h>
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/random.h"
-#include "base/text.h"
-#include "io/nexus.h"
-#include "optics/optics.h"
+#include "run/film.h"
+#include "run/prepare.h"
+#include "run/simulate_rig.h"
+#include "run/studio.h"
 
-#define PLUS PTIE_NEXUS_DATA "/plus"
-#define MINUS PTIE_NEXUS_DATA "/minus"
-#define TRUTH_GROUP "/entry/truth"
-#define TRUTH TRUTH_GROUP "/phase"
-
-#define PARAMETRIC_RAD 1.0 /* phase of the value 1 unless the caller says */
-
-/* One block of frames, as many as there are threads. */
+/* Frames are made in blocks, as many as there are threads, and written one after the other. */
 typedef struct simulation {
     const ptie_simulate_params *params;
-    ptie_optics *optics;
+    ptie_simulated_files files;
+    ptie_pool *pool;
+    ptie_progress progress;
+    uint64_t done, total; /* frames of all recordings */
+    ptie_studio *studio;
     size_t pixels, block, scratch_bytes;
-    int64_t first;               /* frame of the block */
-    float factor;                /* of the rendered flow, to rad */
-    float *phase, *plus, *minus; /* (block, H, W) */
-    unsigned char *scratch;      /* one part per worker */
+    int32_t images;         /* of a frame */
+    ptie_exposure exposure; /* of the recording that is being made */
+    int64_t first;          /* frame of the block */
+    float *image;           /* (block, images, H, W) */
+    float *phase;           /* (block, H, W) */
+    float *cells;           /* (H/2, W/2): the truth as a mosaic's planes can show it */
+    unsigned char *scratch; /* one part per worker */
 } simulation;
 
-static ptie_status render(const simulation *s, int64_t frame, float *phase) {
-    ptie_flow_params flow = s->params->flow;
-    flow.time_s += (double)frame / s->params->frame_rate_hz;
-    PTIE_TRY(ptie_flow_render(phase, &flow));
-    for (size_t i = 0; i < s->pixels; i++) phase[i] *= s->factor;
-    return PTIE_OK;
+static float *image_of(const simulation *s, size_t slot, int32_t which) {
+    return s->image + (slot * (size_t)s->images + (size_t)which) * s->pixels;
 }
 
-static ptie_status simulate_frame(void *context, size_t i, int32_t worker) {
+static ptie_status simulate_frame(void *context, size_t slot, int32_t worker) {
     simulation *s = context;
-    const ptie_simulate_params *p = s->params;
-    float *phase = s->phase + i * s->pixels, *plus = s->plus + i * s->pixels,
-          *minus = s->minus + i * s->pixels;
-    int64_t frame = s->first + (int64_t)i;
-    PTIE_TRY(render(s, frame, phase));
-    PTIE_TRY(ptie_optics_defocus(s->optics, plus, minus, phase, NULL,
-                                 s->scratch + (size_t)worker * s->scratch_bytes));
-    ptie_add_gaussian_noise(plus, s->pixels, p->noise, p->flow.seed, PTIE_STREAM_NOISE_PLUS,
-                            (uint64_t)frame);
-    ptie_add_gaussian_noise(minus, s->pixels, p->noise, p->flow.seed, PTIE_STREAM_NOISE_MINUS,
-                            (uint64_t)frame);
-    return PTIE_OK;
+    float *image[2] = {image_of(s, slot, 0), s->images > 1 ? image_of(s, slot, 1) : NULL};
+    return ptie_studio_frame(s->studio, image, s->phase + slot * s->pixels, s->exposure, s->first + (int64_t)slot,
+                            s->scratch + (size_t)worker * s->scratch_bytes);
 }
 
-/* A physical flow is scaled by what frame 0 needs, so that it still grows and fades as it does. */
-static ptie_status find_factor(simulation *s) {
+static ptie_status prepare(simulation *s) {
     const ptie_simulate_params *p = s->params;
-    s->factor = 1;
-    if (p->flow.family == PTIE_PARAMETRIC) {
-        s->factor = (float)(p->amplitude_rad > 0 ? p->amplitude_rad : PARAMETRIC_RAD);
-    } else if (p->amplitude_rad > 0) {
-        float peak = 0;
-        PTIE_TRY(render(s, 0, s->phase));
-        for (size_t i = 0; i < s->pixels; i++) peak = fmaxf(peak, fabsf(s->phase[i]));
-        if (peak > 0) s->factor = (float)p->amplitude_rad / peak;
-    }
-    return PTIE_OK;
-}
-
-static ptie_status prepare(simulation *s, ptie_pool *pool) {
-    const ptie_simulate_params *p = s->params;
-    ptie_optics_params optics;
-    ptie_optics_params_init(&optics);
-    optics.width_px = p->flow.width_px;
-    optics.height_px = p->flow.height_px;
-    optics.pixel_m = p->flow.pixel_m;
-    optics.wavelength_m = p->flow.wavelength_m;
-    optics.defocus_m = p->defocus_m;
-    optics.boundary = p->boundary;
-    optics.propagation = p->propagation;
-    PTIE_TRY(ptie_optics_plan(&s->optics, &optics));
+    PTIE_TRY(ptie_studio_create(&s->studio, p));
     s->pixels = (size_t)p->flow.width_px * (size_t)p->flow.height_px;
-    s->block = (size_t)ptie_pool_threads(pool);
-    s->scratch_bytes = ptie_optics_scratch(s->optics);
+    s->block = (size_t)ptie_pool_threads(s->pool);
+    s->images = ptie_studio_images(s->studio);
+    s->scratch_bytes = ptie_studio_scratch(s->studio);
+    PTIE_TRY(ptie_alloc_status(&s->image, s->block * (size_t)s->images, s->pixels * sizeof(float), "block of frames"));
     PTIE_TRY(ptie_alloc_status(&s->phase, s->block, s->pixels * sizeof(float), "block of frames"));
-    PTIE_TRY(ptie_alloc_status(&s->plus, s->block, s->pixels * sizeof(float), "block of frames"));
-    PTIE_TRY(ptie_alloc_status(&s->minus, s->block, s->pixels * sizeof(float), "block of frames"));
-    PTIE_TRY(ptie_alloc_status(&s->scratch, s->block, s->scratch_bytes, "scratch of the optics"));
-    return find_factor(s);
+    PTIE_TRY(ptie_alloc_status(&s->cells, s->pixels / 4, sizeof(float), "truth"));
+    return ptie_alloc_status(&s->scratch, s->block, s->scratch_bytes, "scratch of a frame");
 }
 
-static ptie_status describe_truth(ptie_h5 *h5, const ptie_simulate_params *p) {
-    const uint64_t dims[3] = {(uint64_t)p->frames, (uint64_t)p->flow.height_px,
-                              (uint64_t)p->flow.width_px};
-    PTIE_TRY(ptie_h5_set_text(h5, TRUTH_GROUP, "NX_class", "NXdata"));
-    PTIE_TRY(ptie_h5_set_text(h5, TRUTH_GROUP, "signal", "phase"));
-    PTIE_TRY(ptie_h5_dataset(h5, TRUTH, PTIE_H5_F32, 3, dims, 1));
-    PTIE_TRY(ptie_h5_set_text(h5, TRUTH, "long_name", "True phase"));
-    return ptie_h5_set_text(h5, TRUTH, "units", "rad");
+static bool is_mosaic(const ptie_simulate_params *p) {
+    return p->camera && p->camera->layout == PTIE_CAMERA_MOSAIC;
 }
 
-static ptie_status describe_simulation(ptie_h5 *h5, const ptie_simulate_params *p) {
-    static const char process[] = "/entry/process_1";
-    PTIE_TRY(ptie_h5_set_text(h5, process, "NX_class", "NXprocess"));
-    PTIE_TRY(ptie_h5_set_text(h5, process, "program", "ptie"));
-    PTIE_TRY(ptie_h5_set_text(h5, process, "version", ptie_version()));
-    if (p->provenance) PTIE_TRY(ptie_h5_set_text(h5, process, "command", p->provenance));
-    PTIE_TRY(ptie_h5_set_text(h5, process, "morphology", p->flow.morphology));
-    PTIE_TRY(ptie_h5_set_text(h5, process, "family",
-                              p->flow.family == PTIE_PHYSICAL ? "physical" : "parametric"));
-    PTIE_TRY(ptie_h5_set_integer(h5, process, "seed", (int64_t)p->flow.seed));
-    PTIE_TRY(ptie_h5_set_integer(h5, process, "index", (int64_t)p->flow.index));
-    PTIE_TRY(ptie_h5_set_number(h5, process, "wavelength_m", p->flow.wavelength_m));
-    PTIE_TRY(ptie_h5_set_number(h5, process, "defocus_m", p->defocus_m));
-    return ptie_h5_set_number(h5, process, "noise", p->noise);
+/* Opens the recording of the present exposure. */
+static ptie_status open_film(const simulation *s, ptie_film *film, const char *path, int64_t frames) {
+    const ptie_simulate_params *p = s->params;
+    if (!p->camera) return ptie_film_open_planes(film, p);
+    if (!is_mosaic(p)) return ptie_film_open_sensors(film, path, p, frames);
+    const ptie_recording_info info = {.width_px = p->flow.width_px,
+                                      .height_px = p->flow.height_px,
+                                      .frames = frames,
+                                      .unit = "counts",
+                                      .frame_rate_hz = p->frame_rate_hz,
+                                      .pixel_m = p->flow.pixel_m};
+    return ptie_film_open_image(film, path, "counts", &info, p);
 }
 
-static ptie_status describe(ptie_h5 *h5, const ptie_simulate_params *p) {
-    static const ptie_nexus_signal planes[] = {
-        {.name = "plus", .long_name = "Intensity beyond focus", .unit = "I/I0"},
-        {.name = "minus", .long_name = "Intensity before focus", .unit = "I/I0"}};
-    const ptie_nexus_axes axes = {.frames = (uint64_t)p->frames,
-                                  .width_px = p->flow.width_px,
-                                  .height_px = p->flow.height_px,
-                                  .frame_rate_hz = p->frame_rate_hz,
-                                  .pixel_m = p->flow.pixel_m};
-    PTIE_TRY(ptie_nexus_begin(h5, &axes, planes, 2));
-    PTIE_TRY(describe_truth(h5, p));
-    return describe_simulation(h5, p);
+/* The truth of a camera's recording, in a file of its own: a plane of a mosaic has a pixel per cell. */
+static ptie_status open_truth(const simulation *s, ptie_film *film) {
+    const ptie_simulate_params *p = s->params;
+    const int32_t pitch = is_mosaic(p) ? 2 : 1;
+    const ptie_recording_info info = {.width_px = p->flow.width_px / pitch,
+                                      .height_px = p->flow.height_px / pitch,
+                                      .frames = p->frames,
+                                      .unit = "rad",
+                                      .frame_rate_hz = p->frame_rate_hz,
+                                      .pixel_m = p->flow.pixel_m * pitch};
+    return ptie_film_open_image(film, s->files.truth, "phase", &info, p);
 }
 
-/* Frame by frame, so that the file does not show how long a block was. */
-static ptie_status write_block(ptie_h5 *h5, const simulation *s, uint64_t count) {
-    for (uint64_t i = 0; i < count; i++) {
-        uint64_t frame = (uint64_t)s->first + i;
-        size_t at = (size_t)i * s->pixels;
-        PTIE_TRY(ptie_h5_write(h5, PLUS, PTIE_H5_F32, frame, 1, s->plus + at));
-        PTIE_TRY(ptie_h5_write(h5, MINUS, PTIE_H5_F32, frame, 1, s->minus + at));
-        PTIE_TRY(ptie_h5_write(h5, TRUTH, PTIE_H5_F32, frame, 1, s->phase + at));
+static ptie_status write_truth(const simulation *s, ptie_film *truth, int64_t frame, const float *phase) {
+    if (!is_mosaic(s->params)) return ptie_film_append(truth, frame, &phase);
+    ptie_bin(s->cells, phase, s->params->flow.width_px, s->params->flow.height_px, 2);
+    return ptie_film_append(truth, frame, (const float *[]){s->cells});
+}
+
+/* Frame by frame, so that the file does not show how long a block was.  truth: NULL for none. */
+static ptie_status write_block(const simulation *s, ptie_film *film, ptie_film *truth, uint64_t count) {
+    for (size_t slot = 0; slot < count; slot++) {
+        const int64_t frame = s->first + (int64_t)slot;
+        const float *phase = s->phase + slot * s->pixels, *image[PTIE_FILM_IMAGES] = {0};
+        for (int32_t i = 0; i < s->images; i++) image[i] = image_of(s, slot, i);
+        if (film->images > s->images) image[s->images] = phase;
+        PTIE_TRY(ptie_film_append(film, frame, image));
+        if (truth) PTIE_TRY(write_truth(s, truth, frame, phase));
     }
     return PTIE_OK;
 }
 
-static ptie_status write_frames(ptie_h5 *h5, simulation *s, ptie_pool *pool,
-                                ptie_progress progress) {
-    uint64_t frames = (uint64_t)s->params->frames;
+static ptie_status write_frames(simulation *s, ptie_film *film, ptie_film *truth, uint64_t frames) {
     for (uint64_t first = 0; first < frames;) {
-        uint64_t count = frames - first < s->block ? frames - first : s->block;
+        const uint64_t count = frames - first < s->block ? frames - first : s->block;
         s->first = (int64_t)first;
-        PTIE_TRY(ptie_pool_run(pool, (size_t)count, simulate_frame, s));
-        PTIE_TRY(write_block(h5, s, count));
+        PTIE_TRY(ptie_pool_run(s->pool, (size_t)count, simulate_frame, s));
+        PTIE_TRY(write_block(s, film, truth, count));
         first += count;
-        PTIE_TRY(ptie_progress_report(progress, first, frames, NULL));
+        s->done += count;
+        PTIE_TRY(ptie_progress_report(s->progress, s->done, s->total, NULL));
     }
     return PTIE_OK;
 }
 
-static ptie_status write_recording(simulation *s, ptie_pool *pool, ptie_progress progress) {
-    ptie_h5 *h5;
-    PTIE_TRY(ptie_h5_create(&h5, s->params->output, s->params->overwrite));
-    ptie_status status = describe(h5, s->params);
-    if (status == PTIE_OK) status = write_frames(h5, s, pool, progress);
-    if (status == PTIE_OK) return ptie_h5_close(h5);
-    ptie_h5_discard(h5);
-    return status;
+/* A recording of one exposure; frames 0: none. */
+static ptie_status record(simulation *s, const char *path, ptie_exposure exposure, int64_t frames) {
+    ptie_film film = {0}, truth = {0};
+    const bool with_truth = s->params->camera && exposure == PTIE_EXPOSE_FLOW;
+    if (frames == 0) return PTIE_OK;
+    s->exposure = exposure;
+    PTIE_TRY(open_film(s, &film, path, frames));
+    ptie_status status = with_truth ? open_truth(s, &truth) : PTIE_OK;
+    if (status == PTIE_OK) status = write_frames(s, &film, with_truth ? &truth : NULL, (uint64_t)frames);
+    if (with_truth) status = ptie_film_close(&truth, status);
+    return ptie_film_close(&film, status);
 }
 
-/* As a person would write it. */
-static void print_rig(ptie_text *text, const ptie_simulate_params *p) {
-    char wavelength[PTIE_QUANTITY_BYTES], pixel[PTIE_QUANTITY_BYTES], defocus[PTIE_QUANTITY_BYTES],
-        rate[PTIE_QUANTITY_BYTES];
-    ptie_text_append(text, "; The rig of a simulated recording.\n");
-    ptie_text_append(text, "[optics]\nwavelength = %s\npixel = %s\ndefocus = %s\n\n",
-                     ptie_print_quantity(wavelength, p->flow.wavelength_m, PTIE_LENGTH),
-                     ptie_print_quantity(pixel, p->flow.pixel_m, PTIE_LENGTH),
-                     ptie_print_quantity(defocus, p->defocus_m, PTIE_LENGTH));
-    ptie_text_append(text, "[planes]\nset = pair\nplus = " PLUS "\nminus = " MINUS "\n\n");
-    ptie_text_append(text, "[recording]\nframe_rate = %s\n\n",
-                     ptie_print_quantity(rate, p->frame_rate_hz, PTIE_RATE));
-    ptie_text_append(text, "[flow]\npolarity = %s\n\n",
-                     p->flow.family == PTIE_PARAMETRIC ? "positive" : "auto");
-    ptie_text_append(text, "[solver]\nboundary = %s\n",
-                     p->boundary == PTIE_PERIODIC ? "periodic" : "mirror");
+static ptie_status record_all(simulation *s) {
+    const ptie_simulate_params *p = s->params;
+    const int64_t still = p->camera ? p->reference_frames : 0, dark = p->camera ? p->dark_frames : 0;
+    s->total = (uint64_t)(p->frames + still + dark);
+    PTIE_TRY(record(s, p->output, PTIE_EXPOSE_FLOW, p->frames));
+    PTIE_TRY(record(s, s->files.reference, PTIE_EXPOSE_REFERENCE, still));
+    PTIE_TRY(record(s, s->files.dark, PTIE_EXPOSE_DARK, dark));
+    return p->rig ? ptie_simulate_write_rigs(p, &s->files) : PTIE_OK;
 }
 
-static ptie_status write_rig(const ptie_simulate_params *p) {
-    ptie_text text = {0};
-    print_rig(&text, p);
-    ptie_status status = text.failed
-                             ? PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", p->rig)
-                             : ptie_write_file(p->rig, text.data, text.length, p->overwrite);
-    ptie_text_free(&text);
-    return status;
-}
-
-/* Finds out before the work whether a file can be written after it. */
-static ptie_status check_output(const char *path, bool overwrite) {
-    ptie_output_file file;
-    PTIE_TRY(ptie_output_open(&file, path, overwrite));
-    ptie_output_discard(&file);
+/* Finds out before the work whether the files can be written after it. */
+static ptie_status check_outputs(const ptie_simulate_params *p, const ptie_simulated_files *files) {
+    const char *const paths[] = {p->output, p->rig, files->truth, files->reference, files->dark, files->true_rig};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        ptie_output_file file;
+        if (!paths[i] || !paths[i][0]) continue;
+        PTIE_TRY(ptie_output_open(&file, paths[i], p->overwrite));
+        ptie_output_discard(&file);
+    }
     return PTIE_OK;
 }
 
 ptie_status ptie_simulate_run(ptie_pool *pool, const ptie_simulate_params *params,
                               ptie_progress progress) {
-    simulation s = {.params = params};
+    simulation s = {.params = params, .pool = pool, .progress = progress};
     ptie_status status;
-    PTIE_TRY(check_output(params->output, params->overwrite));
-    if (params->rig) PTIE_TRY(check_output(params->rig, params->overwrite));
-    PTIE_TRY_DONE(prepare(&s, pool));
-    PTIE_TRY_DONE(write_recording(&s, pool, progress));
-    if (params->rig) status = write_rig(params);
+    PTIE_TRY(ptie_simulate_name_files(&s.files, params));
+    PTIE_TRY(check_outputs(params, &s.files));
+    PTIE_TRY_DONE(prepare(&s));
+    status = record_all(&s);
 done:
-    ptie_optics_free(s.optics);
+    ptie_studio_free(s.studio);
+    ptie_free(s.image);
     ptie_free(s.phase);
-    ptie_free(s.plus);
-    ptie_free(s.minus);
+    ptie_free(s.cells);
     ptie_free(s.scratch);
     return status;
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include <ptie/recording.h>
 #include <ptie/simulate.h>
 #include <ptie/solver.h>
 
@@ -158,6 +159,137 @@ static void the_rig_fits_the_recording(void **state) {
     assert_string_equal(rig.plane[PTIE_MINUS].source, "/entry/data/minus");
 }
 
+/* A mosaic camera with everything that a real one has. */
+static ptie_camera_params faulty(void) {
+    ptie_camera_params c;
+    ptie_camera_params_init(&c);
+    c.layout = PTIE_CAMERA_MOSAIC;
+    c.extinction = 40, c.minus_gain = 0.8, c.gain[0] = 0.9;
+    c.minus_shift_x_px = 1.5, c.minus_magnification = 1.01, c.minus_rotation_rad = 4e-3;
+    c.pixel_gain = 0.01, c.pixel_offset = 1, c.dust = 3, c.fringes = 0.02, c.flicker = 0.01;
+    c.beam_m = 2e-3, c.nozzle_length_m = 0.2e-3, c.nozzle_width_m = 0.3e-3;
+    return c;
+}
+
+static void a_camera_writes_the_same_bytes_with_any_threads(void **state) {
+    (void)state;
+    static const char *const beside[] = {"", "_reference", "_dark"};
+    const ptie_camera_params camera = faulty();
+    unsigned char *first[4] = {0};
+    size_t bytes[4];
+    for (int threads = 1; threads <= 3; threads += 2) {
+        ptie_simulate_params p = small(support_temporary("lab.npy"));
+        p.camera = &camera, p.reference_frames = 3, p.dark_frames = 2;
+        p.propagation = PTIE_ANGULAR_SPECTRUM;
+        simulate(&p, threads);
+        for (int i = 0; i < 4; i++) {
+            char name[64];
+            size_t length;
+            snprintf(name, sizeof name, i < 3 ? "lab%s.npy" : "lab_truth.h5", i < 3 ? beside[i] : "");
+            unsigned char *file = support_read(support_temporary(name), &length);
+            if (threads == 1) {
+                first[i] = file, bytes[i] = length;
+                continue;
+            }
+            assert_int_equal(length, bytes[i]);
+            assert_memory_equal(file, first[i], length);
+            free(file), free(first[i]);
+        }
+    }
+}
+
+/* Frames, size and pixel of a file, and its first frame. */
+static float *first_frame(const char *path, int64_t frames, int32_t side, double pixel_m) {
+    ptie_recording *recording;
+    assert_ok(ptie_recording_open(&recording, path));
+    const ptie_recording_info *info = ptie_recording_get_info(recording);
+    assert_int_equal(info->frames, frames);
+    assert_true(info->width_px == side && info->height_px == side);
+    if (pixel_m > 0) assert_near(info->pixel_m, pixel_m, 1e-12);
+    float *frame = malloc(sizeof *frame * (size_t)(side * side));
+    assert_ok(ptie_recording_read(recording, 0, frame));
+    ptie_recording_close(recording);
+    return frame;
+}
+
+static void a_camera_records_flow_reference_dark_and_truth(void **state) {
+    (void)state;
+    ptie_camera_params camera;
+    ptie_camera_params_init(&camera);
+    camera.layout = PTIE_CAMERA_MOSAIC;
+    camera.full_well = 1e9, camera.read_noise = 0, camera.bits = 16; /* noise below a count and a half */
+    ptie_simulate_params p = small(support_temporary("lab.tif"));
+    p.camera = &camera, p.reference_frames = 4, p.dark_frames = 2, p.amplitude_rad = 0.3;
+    simulate(&p, 2);
+    float *flow = first_frame(p.output, FRAMES, SIDE, 20e-6),
+          *still = first_frame(support_temporary("lab_reference.tif"), 4, SIDE, 20e-6),
+          *dark = first_frame(support_temporary("lab_dark.tif"), 2, SIDE, 20e-6),
+          *truth = first_frame(support_temporary("lab_truth.h5"), FRAMES, SIDE / 2, 40e-6);
+    p.camera = NULL, p.noise = 0, p.output = support_temporary("clean.h5");
+    simulate(&p, 2);
+    float *plus = maps(p.output, "/entry/data/plus"), *minus = maps(p.output, "/entry/data/minus"),
+          *phase = maps(p.output, "/entry/truth/phase");
+    const double half = (65535 - 64) / 2.0; /* counts at intensity 1 */
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const int x = i % SIDE, y = i / SIDE, c = 2 * (y % 2) + x % 2;
+        /* Sony's cell: 90 45, 135 0 degrees; plus is polarised along 0. */
+        const double a = c == 3 ? 1 : c == 0 ? 0 : 0.5, b = 1 - a;
+        /* Shot noise is 1.5 counts, six of it; rounding half a count. */
+        assert_near((double)flow[i], 64 + half * (a * (double)plus[i] + b * (double)minus[i]), 9.5);
+        assert_near((double)still[i], 64 + half, 9.5);
+        assert_true(dark[i] == 64);
+    }
+    for (int i = 0; i < SIDE * SIDE / 4; i++) {
+        const float *cell = phase + 2 * (i % (SIDE / 2)) + 2 * (i / (SIDE / 2)) * SIDE;
+        assert_near((double)truth[i],
+                    ((double)cell[0] + (double)cell[1] + (double)cell[SIDE] + (double)cell[SIDE + 1]) / 4, 1e-7);
+    }
+    free(flow), free(still), free(dark), free(truth), free(plus), free(minus), free(phase);
+}
+
+static void the_rigs_of_a_camera_say_what_is_known_and_what_is_true(void **state) {
+    (void)state;
+    const ptie_camera_params camera = faulty();
+    ptie_simulate_params p = small(support_temporary("lab.npy"));
+    ptie_rig known, truth;
+    p.camera = &camera, p.rig = support_temporary("lab.ini");
+    p.reference_frames = 1, p.dark_frames = 1;
+    simulate(&p, 2);
+    assert_ok(ptie_rig_read(&known, p.rig));
+    assert_ok(ptie_rig_read(&truth, support_temporary("lab_true.ini")));
+    assert_int_equal(known.layout, PTIE_LAYOUT_MOSAIC);
+    assert_string_equal(known.reference, support_temporary("lab_reference.npy"));
+    assert_string_equal(known.dark, support_temporary("lab_dark.npy"));
+    assert_true(known.plane[PTIE_PLUS].mix[3] == 1 && known.plane[PTIE_MINUS].mix[0] == 1);
+    assert_true(known.plane[PTIE_MINUS].gain == 1 && known.plane[PTIE_MINUS].shift_x_px == 0);
+    assert_true(known.saturation_counts == 4095 && known.read_noise_electrons == 20 && known.mask_below > 0);
+    assert_near(truth.plane[PTIE_MINUS].gain, 1.25, 1e-12);
+    assert_true(truth.plane[PTIE_MINUS].shift_x_px == 0.75 && truth.plane[PTIE_MINUS].magnification == 1.01 &&
+                truth.plane[PTIE_MINUS].rotation_rad == 4e-3);
+    /* Channels of plus and minus alone come back as planes: 1 of the own, 0 of the other. */
+    const double *plus = truth.plane[PTIE_PLUS].mix, *minus = truth.plane[PTIE_MINUS].mix;
+    assert_near(plus[3] * 1 + plus[0] * 0.9 / 40, 1, 1e-9);
+    assert_near(plus[3] / 40 + plus[0] * 0.9, 0, 1e-9);
+    assert_near(minus[3] / 40 + minus[0] * 0.9, 1, 1e-9);
+    assert_near(minus[3] * 1 + minus[0] * 0.9 / 40, 0, 1e-9);
+}
+
+static void separate_sensors_are_data_sets_of_one_file(void **state) {
+    (void)state;
+    ptie_camera_params camera;
+    ptie_camera_params_init(&camera);
+    ptie_simulate_params p = small(support_temporary("two.h5"));
+    ptie_rig rig;
+    p.camera = &camera, p.rig = support_temporary("two.ini"), p.noise = 9; /* not used */
+    simulate(&p, 2);
+    assert_ok(ptie_rig_read(&rig, p.rig));
+    assert_int_equal(rig.layout, PTIE_LAYOUT_SEPARATE);
+    float *plus = maps(p.output, rig.plane[PTIE_PLUS].source), *minus = maps(p.output, rig.plane[PTIE_MINUS].source);
+    for (int i = 0; i < FRAMES * SIDE * SIDE; i++)
+        assert_true(plus[i] >= 0 && plus[i] <= 4095 && plus[i] == rintf(plus[i]) && minus[i] == rintf(minus[i]));
+    free(plus), free(minus);
+}
+
 static int stop_after_three(void *user, uint64_t done, uint64_t total, const char *note) {
     (void)user, (void)total, (void)note;
     return done >= 3;
@@ -183,6 +315,16 @@ static void failures_leave_no_file(void **state) {
     assert_fails(ptie_simulate(ctx, &p, (ptie_progress){0}), PTIE_EINVAL, "output");
     p.output = "jet.tif";
     assert_fails(ptie_simulate(ctx, &p, (ptie_progress){0}), PTIE_EINVAL, "jet.tif");
+    ptie_camera_params camera;
+    ptie_camera_params_init(&camera);
+    p.output = "jet.npy", p.camera = &camera;
+    assert_fails(ptie_simulate(ctx, &p, (ptie_progress){0}), PTIE_EINVAL, "jet.npy: cannot write two planes");
+    camera.bits = 7;
+    assert_fails(ptie_simulate(ctx, &p, (ptie_progress){0}), PTIE_EINVAL, "bits is out of range");
+    camera.bits = 12, camera.layout = PTIE_CAMERA_MOSAIC, p.output = support_temporary("other.npy");
+    support_write(support_temporary("other_dark.npy"), "mine", 4), p.overwrite = false;
+    assert_fails(ptie_simulate(ctx, &p, (ptie_progress){0}), PTIE_EEXIST, "other_dark.npy");
+    p.camera = NULL, p.overwrite = true;
     p.output = p.rig = path;
     assert_fails(ptie_simulate(ctx, &p, (ptie_progress){0}), PTIE_EINVAL, "would be written over");
     assert_false(support_exists(path) || support_exists(rig));
@@ -200,6 +342,10 @@ int main(void) {
         cmocka_unit_test(noise_has_the_stated_size),
         cmocka_unit_test(physical_flows_reach_the_wanted_phase),
         cmocka_unit_test(the_rig_fits_the_recording),
+        cmocka_unit_test(a_camera_writes_the_same_bytes_with_any_threads),
+        cmocka_unit_test(a_camera_records_flow_reference_dark_and_truth),
+        cmocka_unit_test(the_rigs_of_a_camera_say_what_is_known_and_what_is_true),
+        cmocka_unit_test(separate_sensors_are_data_sets_of_one_file),
         cmocka_unit_test(failures_leave_no_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -315,23 +315,24 @@ static void files_say_what_a_camera_is(void **state) {
     ptie_camera_params p, none = defaults();
     read_file(&p, "");
     assert_memory_equal(&p, &none, sizeof p);
-    read_file(&p, "[mosaic]\nangles = crysta\nplus = 0 rad\nminus = 90 deg\nextinction = 80\ngain = 1 .9 1.1 1\n"
+    read_file(&p, "[sensor]\nlayout = mosaic\n[mosaic]\nangles = crysta\nplus = 0 rad\nminus = 90 deg\nextinction = 80\ngain = 1 .9 1.1 1\n"
                   "[minus]\nrotation = 2 mrad\nshift_x = -1.5\n[light]\nbeam = 8 mm\n[sensor]\nexposure = 60 %\n");
     assert_int_equal(p.layout, PTIE_CAMERA_MOSAIC);
     assert_true(p.angle_deg[0] == 0 && p.angle_deg[1] == 45 && p.angle_deg[2] == 135 && p.angle_deg[3] == 90);
     assert_true(p.extinction == 80 && p.gain[1] == 0.9 && p.gain[2] == 1.1 && p.minus_rotation_rad == 2e-3 &&
                 p.minus_shift_x_px == -1.5 && p.beam_m == 8e-3 && p.exposure == 0.6);
     assert_near(p.minus_rad, PI / 2, 1e-15);
-    read_file(&p, "[mosaic]\nangles = 0 90 45 -45\n");
-    assert_true(p.angle_deg[1] == 90 && p.angle_deg[3] == -45);
-    refuse("[mosaic]\nangles = canon\n", PTIE_EFORMAT, "angles (none, sony, crysta, or degrees): expected four numbers");
-    refuse("[mosaic]\nangles = 0 90 45 13.5\n", PTIE_EFORMAT, "expected whole degrees from -360 to 360, found 13.5");
-    refuse("[mosaic]\ngain = 1 1 1\n", PTIE_EFORMAT, "gain: expected four numbers, row by row, found '1 1 1'");
+    read_file(&p, "[mosaic]\nangles = 0 90 45 30\n");
+    assert_true(p.layout == PTIE_CAMERA_SEPARATE && p.angle_deg[1] == 90 && p.angle_deg[3] == 30);
+    refuse("[mosaic]\nangles = canon\n", PTIE_EFORMAT, "angles: expected sony, crysta or four different angles");
+    refuse("[mosaic]\ngain = 1 1 1\n", PTIE_EFORMAT, "gain: expected four numbers from 0 to 100, row by row, found '1 1 1'");
     refuse("[mosaic]\ngain = 1 1 1 1 1\n", PTIE_EFORMAT, "gain: expected four numbers");
-    refuse("[mosaic]\ngain = 1 1 1 -1\n", PTIE_EINVAL, "gain is out of range (expected 0..100, found -1)");
+    refuse("[mosaic]\ngain = 1 1 1 -1\n", PTIE_EFORMAT, "gain: expected four numbers from 0 to 100");
     refuse("[sensor]\nblack = 255\nbits = 8\n", PTIE_EINVAL, "black is out of range (expected 0..254, found 255)");
     refuse("[sensor]\nbits = 20\n", PTIE_EFORMAT, "bits: out of range");
     refuse("[light]\nbeem = 8 mm\n", PTIE_ENAME, "did you mean 'beam'?");
+    none.gain[2] = -1;
+    assert_fails(ptie_camera_check(&none, "here"), PTIE_EINVAL, "here: gain is out of range (expected 0..100, found -1)");
     none.exposure = (double)NAN;
     assert_fails(ptie_camera_check(&none, "here"), PTIE_EINVAL, "here: exposure is out of range");
 }
