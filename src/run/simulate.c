@@ -62,12 +62,19 @@ static ptie_status open_film(const simulation *s, ptie_film *film, const char *p
     const ptie_simulate_params *p = s->params;
     if (!p->camera) return ptie_film_open_planes(film, p);
     if (!is_mosaic(p)) return ptie_film_open_sensors(film, path, p, frames);
-    const ptie_recording_info info = {.width_px = p->flow.width_px,
-                                      .height_px = p->flow.height_px,
-                                      .frames = frames,
-                                      .unit = "counts",
-                                      .frame_rate_hz = p->frame_rate_hz,
-                                      .pixel_m = p->flow.pixel_m};
+    ptie_recording_info info = {.width_px = p->flow.width_px,
+                                .height_px = p->flow.height_px,
+                                .frames = frames,
+                                .unit = "counts",
+                                .frame_rate_hz = p->frame_rate_hz,
+                                .pixel_m = p->flow.pixel_m,
+                                .camera = "ptie simulate",
+                                .bit_depth = p->camera->bits,
+                                .roi_x_px = p->camera->roi_x_px,
+                                .roi_y_px = p->camera->roi_y_px};
+    snprintf(info.sample, sizeof info.sample, "u%d", p->camera->bits);
+    const char *const title[] = {p->flow.morphology, "no flow", "dark"}; /* by exposure */
+    snprintf(info.comment, sizeof info.comment, "%s, seed %llu", title[s->exposure], (unsigned long long)p->flow.seed);
     return ptie_film_open_image(film, path, "counts", &info, p);
 }
 
