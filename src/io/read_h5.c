@@ -209,4 +209,5 @@ const ptie_reader ptie_read_h5 = {.name = "HDF5",
                                   .open = h5_open,
                                   .read = h5_read,
                                   .close = h5_close,
-                                  .has_data_sets = true};
+                                  .has_data_sets = true,
+                                  .takes_inside = true};

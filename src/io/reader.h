@@ -25,10 +25,11 @@ typedef struct ptie_reader {
     /* Frame 0 .. info->frames-1 as stored. */
     ptie_status (*read)(void *state, int64_t frame, float *data);
     void (*close)(void *state); /* NULL is fine */
-    bool has_data_sets;         /* `inside` may be other than "" */
+    bool has_data_sets;         /* a file may hold several recordings */
+    bool takes_inside;          /* `inside` may be other than "" */
 } ptie_reader;
 
-extern const ptie_reader ptie_read_sequence, ptie_read_mraw, ptie_read_npy, ptie_read_png,
+extern const ptie_reader ptie_read_sequence, ptie_read_mraw, ptie_read_cine, ptie_read_npy, ptie_read_png,
     ptie_read_tiff, ptie_read_h5;
 
 /* Stores a frame size that was read from a file: 1 .. PTIE_LONGEST_SIDE px each. */

@@ -60,9 +60,9 @@ static bool is_kind(const ptie_reader *reader, const char *path, const unsigned 
 
 /* NULL if there is none. */
 static const ptie_reader *choose(const char *path, const unsigned char *head) {
-    static const ptie_reader *const readers[] = {&ptie_read_sequence, &ptie_read_mraw,
-                                                 &ptie_read_npy,      &ptie_read_png,
-                                                 &ptie_read_tiff,     &ptie_read_h5};
+    static const ptie_reader *const readers[] = {&ptie_read_sequence, &ptie_read_mraw, &ptie_read_cine,
+                                                 &ptie_read_npy,      &ptie_read_png,  &ptie_read_tiff,
+                                                 &ptie_read_h5};
     for (size_t i = 0; i < sizeof readers / sizeof *readers; i++)
         if (is_kind(readers[i], path, head)) return readers[i];
     return NULL;
@@ -77,7 +77,7 @@ static ptie_status find_reader(const ptie_reader **out, const char *path, const 
     }
     if (!reader)
         return PTIE_FAIL(PTIE_EFORMAT, "%s: unknown kind of file (expected MRAW, CINE, NPY, PNG, TIFF, HDF5, MAT or raw)", path);
-    if (*inside && !reader->has_data_sets)
+    if (*inside && !reader->takes_inside)
         return PTIE_FAIL(PTIE_EFORMAT, "%s: %s files have no data sets (expected no ':', found ':%s')",
                          path, reader->name, inside);
     *out = reader;

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Writes small recordings as cameras and programs lay them out, for tests/io: Photron MRAW with CIH and CIHX.
+"""Writes small recordings as cameras and programs lay them out, for tests/io: Photron MRAW with CIH and CIHX,
+Phantom CINE.
 
 Frame t holds, in counts, f * (x + 10 y + 50 t) with f = 1 (8 bits), 7 (10 bits), 27 (12 and 16 bits); 7 x 5 pixels,
 3 frames.  Bits are laid out one by one here, from NumPy's unpackbits.  Usage: make_cameras.py [FOLDER]
@@ -68,6 +69,43 @@ def write_photron(name, bits, header, ending, shift=0, row_bytes=0):
     (OUT / f"{name}.{ending}").write_bytes(header)
 
 
+def setup(length, flip, bits):
+    """Vendor's SETUP block of that length; what lies beyond it must not be read."""
+    block = bytearray(14000)
+    fields = {0: ("H", 65535), 2: ("H", 10), 140: ("2s", b"ST"), 142: ("H", length), 743: ("I", 4711), 760: ("i", flip),
+              768: ("I", 90000), 772: ("I", 10), 792: ("I", 73), 896: ("I", bits), 1568: ("I", 9700),
+              1596: ("9s", b"a  \xe4 plume"), 5732: ("i", 64), 5736: ("i", 1014 if bits == 10 else 4064),
+              12432: ("5s", b"v2512"), 13472: ("d", 90000.5)}
+    for at, (kind, value) in fields.items():
+        struct.pack_into("<" + kind, block, at, value)
+    return bytes(block[:length])
+
+
+def write_cine(name, bits, packing=0, flip=0, length=13600, real_bits=12, stamps=True):
+    head, images = bytearray(44), bytearray(40)
+    tags = b""
+    if stamps:  # 9 kHz, across a full second
+        times = [(2**32 - 2**32 // 9000 + i * 2**32 // 9000) for i in range(T)]
+        body = b"".join(struct.pack("<II", v % 2**32 & ~3 | 1, 1700000000 + v // 2**32) for v in times)
+        tags = struct.pack("<IHH", 12, 1003, 0) + b"\0" * 4 + struct.pack("<IHH", 8 + len(body), 1002, 0) + body
+    offsets_at = 84 + length + len(tags)
+    frames = [frame if packing or flip else frame[::-1] for frame in F * FACTOR[bits]]
+    if packing and flip:
+        frames = [frame[::-1] for frame in frames]
+    pixels = [stored(frame, bits) for frame in frames]
+    at, table, images_data = offsets_at + 8 * T, b"", b""
+    for i, data in enumerate(pixels):
+        note = b"n" * i
+        table += struct.pack("<q", at)
+        image = struct.pack("<I", 8 + len(note)) + note + struct.pack("<I", len(data)) + data
+        at += len(image)
+        images_data += image
+    struct.pack_into("<2sHHHiIiIIIIII", head, 0, b"CI", 44, 0, 1, -1000, 1001, -2, T, 44, 84, offsets_at, 7, 1700000000)
+    struct.pack_into("<IiiHHIIiiII", images, 0, 40, W, H, 1, bits if packing == 0 else 16, packing, len(pixels[0]), 50000,
+                     50000, 0, 0)
+    (OUT / f"{name}.cine").write_bytes(bytes(head) + bytes(images) + setup(length, flip, real_bits) + tags + table + images_data)
+
+
 OUT.mkdir(exist_ok=True)
 for bits, depth in ((8, 12), (10, 10), (12, 12), (16, 12)):
     write_photron(f"u{bits}", bits, cih(bits, depth), "cih")
@@ -75,3 +113,8 @@ write_photron("higher", 16, cih(16, 12, "Higher"), "cih", shift=4)
 write_photron("padded", 12, cih(12, 12), "cih", row_bytes=16)
 write_photron("xml", 12, cihx(12, 12), "cihx")
 write_photron("short", 16, cih(16, 12, frames=9), "cih")
+write_cine("plain8", 8, real_bits=8, length=1600)
+write_cine("plain16", 16, flip=1)
+write_cine("old", 16, length=144, stamps=False)
+write_cine("packed10", 10, packing=256, real_bits=10, length=5740)
+write_cine("packed12", 12, packing=1024, flip=1, length=5740)
