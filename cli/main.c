@@ -20,6 +20,8 @@ static const command commands[] = {
     {"run", "recording -> phase -> denoised phase -> metrics, in one pass", run_command},
     {"metrics", "MGM, SBR, BNS and CNR over frames and regions", metrics_command},
     {"convert", "a recording as another kind of file, or a part of it", convert_command},
+    {"prepare", "recording -> planes, as the solver sees them or after any step", prepare_command},
+    {"rig", "rig files: how a set-up is built", rig_command},
     {"info", "what is in a file, a model, a preset, this machine", info_command},
     {"bench", "how fast all of it is on this machine", bench_command},
 };

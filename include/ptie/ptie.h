@@ -31,6 +31,7 @@
 #include <ptie/metrics.h>
 #include <ptie/model.h>
 #include <ptie/optics.h>
+#include <ptie/prepare.h>
 #include <ptie/preprocess.h>
 #include <ptie/recording.h>
 #include <ptie/rig.h>

@@ -76,4 +76,16 @@ PTIE_API void ptie_rig_init(ptie_rig *rig);
    planes at one distance). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_rig_load(ptie_rig *rig, const char *path);
 
+/* A key of a rig file and its value, as text: {"minus", "shift_x", "0.25"}. */
+typedef struct ptie_rig_setting {
+    const char *section, *key, *value;
+} ptie_rig_setting;
+
+/* Writes a rig file: `from` with these settings and everything else, comments too, as it was; or, where `from` is
+   NULL, a new one that explains every key, for a wavelength of 532 nm, pixels of 20 um and planes at +-10 mm unless
+   the settings say otherwise.  `to` may be `from`.  What would not load is not written.  Errors: those of
+   ptie_rig_load; PTIE_EEXIST. */
+PTIE_API PTIE_NODISCARD ptie_status ptie_rig_edit(const char *to, const char *from, const ptie_rig_setting *settings,
+                                                  size_t count, bool overwrite);
+
 #endif

@@ -18,6 +18,19 @@ ptie_status ptie_rig_load(ptie_rig *rig, const char *path) {
     return ptie_rig_read(rig, path);
 }
 
+ptie_status ptie_rig_edit(const char *to, const char *from, const ptie_rig_setting *settings, size_t count,
+                          bool overwrite) {
+    static const char where[] = "ptie_rig_edit";
+    PTIE_TRY(ptie_check_pointer(to, where, "to"));
+    if (count > 0) PTIE_TRY(ptie_check_pointer(settings, where, "settings"));
+    for (size_t i = 0; i < count; i++) {
+        PTIE_TRY(ptie_check_pointer(settings[i].section, where, "section"));
+        PTIE_TRY(ptie_check_pointer(settings[i].key, where, "key"));
+        PTIE_TRY(ptie_check_pointer(settings[i].value, where, "value"));
+    }
+    return ptie_rig_change(to, from, settings, count, overwrite);
+}
+
 static ptie_status check_plane(const ptie_plane *plane, const char *where, const char *role) {
     char name[160];
     snprintf(name, sizeof name, "%s: plane '%s'", where, role);
@@ -25,7 +38,7 @@ static ptie_status check_plane(const ptie_plane *plane, const char *where, const
     PTIE_TRY(ptie_check_number(plane->gain, 1e-6, 1e6, name, "gain"));
     PTIE_TRY(ptie_check_number(plane->shift_x_px, -32768, 32768, name, "shift_x_px"));
     PTIE_TRY(ptie_check_number(plane->shift_y_px, -32768, 32768, name, "shift_y_px"));
-    PTIE_TRY(ptie_check_number(plane->magnification, 0.1, 10, name, "magnification"));
+    PTIE_TRY(ptie_check_number(plane->magnification, 0.5, 2, name, "magnification"));
     for (int c = 0; c < PTIE_CHANNELS; c++)
         PTIE_TRY(ptie_check_number(plane->mix[c], -1e6, 1e6, name, "mix"));
     return ptie_check_number(plane->rotation_rad, -3.15, 3.15, name, "rotation_rad");

@@ -245,6 +245,12 @@ static void print_field(ptie_text *out, const ptie_ini_key *key, const void *fie
     }
 }
 
+static void print_section(ptie_text *out, const char **section, const ptie_ini_key *key) {
+    if (strcmp(*section, key->section) == 0) return;
+    ptie_text_append(out, "%s[%s]\n", **section ? "\n" : "", key->section);
+    *section = key->section;
+}
+
 void ptie_ini_print(ptie_text *out, const void *target, const ptie_ini_key *keys, size_t count) {
     const char *section = "";
     for (size_t i = 0; i < count; i++) {
@@ -252,11 +258,25 @@ void ptie_ini_print(ptie_text *out, const void *target, const ptie_ini_key *keys
         print_field(&value, &keys[i], (const char *)target + keys[i].offset);
         out->failed |= value.failed;
         if (value.length > 0) {
-            if (strcmp(section, keys[i].section) != 0)
-                ptie_text_append(out, "%s[%s]\n", *section ? "\n" : "", keys[i].section);
-            section = keys[i].section;
+            print_section(out, &section, &keys[i]);
             ptie_text_append(out, "%s = %s\n", keys[i].name, value.data);
         }
         ptie_text_free(&value);
+    }
+}
+
+void ptie_ini_print_helped(ptie_text *out, const void *target, const ptie_ini_key *keys, size_t count) {
+    const char *section = "";
+    for (size_t i = 0; i < count; i++) {
+        ptie_text line = {0}, value = {0};
+        print_field(&value, &keys[i], (const char *)target + keys[i].offset);
+        const char *example = keys[i].example ? keys[i].example : "";
+        print_section(out, &section, &keys[i]);
+        ptie_text_append(&line, "%s%s = %s", value.length > 0 ? "" : "; ", keys[i].name,
+                         value.length > 0 ? value.data : example);
+        ptie_text_append(out, "%-32s ; %s\n", line.data ? line.data : "", keys[i].help ? keys[i].help : "");
+        out->failed |= value.failed || line.failed;
+        ptie_text_free(&value);
+        ptie_text_free(&line);
     }
 }

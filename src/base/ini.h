@@ -40,6 +40,8 @@ typedef struct ptie_ini_key {
     size_t text_bytes;       /* TEXT: size of the field */
     const ptie_ini_type *type; /* OWN */
     bool required;
+    const char *help;        /* half a line for people, or NULL */
+    const char *example;     /* value to show where none is set, or NULL */
 } ptie_ini_key;
 
 /* Sets the fields of `target` that `text` names; the others keep their value.  `where` names the file in
@@ -52,5 +54,12 @@ ptie_status ptie_ini_read(void *target, const ptie_ini_key *keys, size_t count, 
 /* Appends the target as INI text that ptie_ini_read reads back to the same values.  What is not set, a quantity
    that is NaN or an empty text, is left out, and so is a section without keys. */
 void ptie_ini_print(ptie_text *out, const void *target, const ptie_ini_key *keys, size_t count);
+
+/* The same for people: each key with its help behind it; a key that is not set as a comment with its example. */
+void ptie_ini_print_helped(ptie_text *out, const void *target, const ptie_ini_key *keys, size_t count);
+
+/* Appends `text` with one key set: in the line that sets it, or in place of a comment that shows it ("; key = ..."),
+   or as a new last line of its section.  Everything else stays as it was. */
+void ptie_ini_edit(ptie_text *out, const char *text, const char *section, const char *key, const char *value);
 
 #endif

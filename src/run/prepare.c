@@ -1,109 +1,141 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "run/prepare.h"
+#include "run/prepare_plan.h"
 
 #include <string.h>
 
 #include "base/memory.h"
-#include "io/recording.h"
+#include "prep/prep.h"
+#include "prep/resample.h"
 #include "run/planes.h"
 
-struct ptie_prepare {
-    ptie_prepare_shape shape;
-    ptie_role role[PTIE_ROLES];
-    int32_t width, height; /* of a sensor image */
-    int32_t binning;
-    float *reference; /* binned no-flow frame, or NULL */
-};
+/* The scratch of one run. */
+typedef struct work {
+    float *image[PTIE_ROLES];      /* (sensor height, width) without dark */
+    float *channel[PTIE_CHANNELS]; /* (H, W) */
+    float *plane[PTIE_ROLES];      /* (H, W) */
+    void *step;                    /* of the splitter or a resampler */
+} work;
 
-/* Mean of all frames of a recording that belongs to the sensor images. */
-static ptie_status read_mean(float *mean, const ptie_prepare *p, const char *path) {
-    ptie_recording *recording;
-    PTIE_TRY(ptie_io_open(&recording, path));
-    const ptie_recording_info *info = ptie_io_info(recording);
-    const size_t count = (size_t)p->width * (size_t)p->height;
-    ptie_status status = PTIE_OK;
-    double *sum = NULL;
-    if (info->width_px != p->width || info->height_px != p->height)
-        status = PTIE_FAIL(PTIE_ESIZE, "%s: frame size differs from the recording's (expected %d x %d px, found "
-                                       "%d x %d)", path, p->width, p->height, info->width_px, info->height_px);
-    if (status == PTIE_OK) status = ptie_alloc_status(&sum, count, sizeof *sum, path);
-    for (int64_t t = 0; t < info->frames && status == PTIE_OK; t++) {
-        status = ptie_io_read(recording, t, mean);
-        for (size_t i = 0; i < count && status == PTIE_OK; i++) sum[i] += (double)mean[i];
-    }
-    for (size_t i = 0; i < count && status == PTIE_OK; i++) mean[i] = (float)(sum[i] / (double)info->frames);
-    ptie_free(sum);
-    ptie_io_close(recording);
-    return status;
+static size_t larger(size_t a, size_t b) {
+    return a > b ? a : b;
 }
 
-static ptie_status read_reference(ptie_prepare *p, const char *path) {
-    float *frame;
-    if (!path[0])
-        return PTIE_FAIL(PTIE_EINVAL, "run: no-flow reference is missing (expected --reference, or "
-                                      "'reference' in the rig's [recording])");
-    const size_t count = (size_t)p->width * (size_t)p->height;
-    PTIE_TRY(ptie_alloc_status(&p->reference, count, sizeof(float), path));
-    PTIE_TRY(ptie_alloc_status(&frame, count, sizeof(float), path));
-    ptie_status status = read_mean(frame, p, path);
-    if (status == PTIE_OK) ptie_bin(p->reference, frame, p->width, p->height, p->binning);
-    ptie_free(frame);
-    return status;
-}
-
-static ptie_status build(ptie_prepare *p, const ptie_source_shape *source, const ptie_rig *rig) {
-    if (rig->layout != PTIE_LAYOUT_SEPARATE)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "run: planes in one sensor image are not read yet");
-    p->width = source->width_px;
-    p->height = source->height_px;
-    p->binning = rig->binning;
-    p->shape = (ptie_prepare_shape){.width_px = p->width / rig->binning,
-                                    .height_px = p->height / rig->binning,
-                                    .pixel_m = ptie_rig_pixel_m(rig)};
-    p->shape.planes = ptie_rig_planes(rig, p->role, p->shape.z_m);
-    if (p->shape.width_px < 2 || p->shape.height_px < 2)
-        return PTIE_FAIL(PTIE_ESIZE, "run: frame too small to bin %d x %d (found %d x %d px)", rig->binning,
-                         rig->binning, p->width, p->height);
-    return rig->one_plane ? read_reference(p, rig->reference) : PTIE_OK;
-}
-
-ptie_status ptie_prepare_create(ptie_prepare **out, const ptie_source *source, const ptie_rig *rig) {
-    *out = NULL;
-    ptie_prepare *p;
-    PTIE_TRY(ptie_alloc_status(&p, 1, sizeof *p, "run"));
-    const ptie_source_shape shape = ptie_source_get_shape(source);
-    ptie_status status = build(p, &shape, rig);
-    if (status == PTIE_OK)
-        *out = p;
-    else
-        ptie_prepare_free(p);
-    return status;
-}
-
-void ptie_prepare_free(ptie_prepare *p) {
-    if (!p) return;
-    ptie_free(p->reference);
-    ptie_free(p);
-}
-
-ptie_prepare_shape ptie_prepare_get_shape(const ptie_prepare *p) {
-    return p->shape;
+static work carve(const ptie_prepare *p, ptie_slicer *slicer) {
+    work w = {0};
+    size_t step = p->splitter ? ptie_prep_splitter_scratch(p->splitter) : 0;
+    for (int32_t i = 0; i < p->measured; i++)
+        if (p->resampler[i]) step = larger(step, ptie_prep_resampler_scratch(p->resampler[i]));
+    for (int32_t i = 0; i < p->images; i++) w.image[i] = ptie_slice(slicer, p->sensor_pixels, sizeof(float));
+    for (int32_t i = 0; i < p->channels; i++) w.channel[i] = ptie_slice(slicer, p->pixels, sizeof(float));
+    for (int32_t i = 0; i < p->planes; i++) w.plane[i] = ptie_slice(slicer, p->pixels, sizeof(float));
+    w.step = ptie_slice(slicer, step, 1);
+    return w;
 }
 
 size_t ptie_prepare_scratch_bytes(const ptie_prepare *p) {
-    (void)p;
-    return 0;
+    ptie_slicer slicer = {0};
+    carve(p, &slicer);
+    return slicer.used;
 }
 
-ptie_status ptie_prepare_run(const ptie_prepare *p, const float *const *images, float *const *planes,
-                             void *scratch) {
-    (void)scratch;
-    const size_t bytes = (size_t)p->shape.width_px * (size_t)p->shape.height_px * sizeof(float);
-    for (int32_t i = 0, image = 0; i < p->shape.planes; i++) {
-        if (p->reference && p->role[i] == PTIE_ZERO)
-            memcpy(planes[i], p->reference, bytes);
+static void subtract_dark(const ptie_prepare *p, const work *w, const float *const *images) {
+    for (int32_t i = 0; i < p->images; i++) {
+        memcpy(w->image[i], images[i], p->sensor_pixels * sizeof(float));
+        if (p->dark[i]) ptie_subtract_dark(w->image[i], p->dark[i], p->sensor_pixels);
+    }
+}
+
+/* Planes as sums of channels, or as they came.  The reference of a set of one plane comes last and is not
+   measured. */
+static void mix(const ptie_prepare *p, const work *w) {
+    for (int32_t i = 0; i < p->measured; i++) {
+        if (p->channels == 0)
+            memcpy(w->plane[i], w->image[i], p->pixels * sizeof(float));
         else
-            ptie_bin(planes[i], images[image++], p->width, p->height, p->binning);
+            ptie_mix_channels(w->plane[i], (const float *const *)w->channel,
+                              p->rig.plane[p->role[i]].mix,
+                              p->channels, p->pixels);
+    }
+}
+
+static void flatten(const ptie_prepare *p, const work *w) {
+    for (int32_t i = 0; i < p->measured; i++)
+        if (p->flat[i]) ptie_apply_gain(w->plane[i], p->flat[i], p->pixels);
+}
+
+static void apply_gains(const ptie_prepare *p, const work *w) {
+    for (int32_t i = 0; i < p->measured; i++) {
+        const double gain = p->rig.plane[p->role[i]].gain;
+        if (gain != 1) ptie_scale_image(w->plane[i], gain, p->pixels);
+    }
+}
+
+/* All planes to the mean of their means: the light that TIE moves about does not become more. */
+static ptie_status match_means(const ptie_prepare *p, const work *w) {
+    double mean[PTIE_ROLES], target = 0;
+    for (int32_t i = 0; i < p->planes; i++) {
+        mean[i] = ptie_masked_mean(w->plane[i], p->light, p->pixels);
+        target += mean[i] / p->planes;
+        if (!(mean[i] > 0))
+            return PTIE_FAIL(PTIE_ENUMERIC, "plane '%s': mean intensity is not positive (expected > 0, found %g)",
+                             ptie_role_names[p->role[i]], mean[i]);
+    }
+    for (int32_t i = 0; i < p->planes; i++) ptie_scale_image(w->plane[i], target / mean[i], p->pixels);
+    return PTIE_OK;
+}
+
+static void bring_to_grid(const ptie_prepare *p, const work *w) {
+    for (int32_t i = 0; i < p->measured; i++)
+        if (p->resampler[i]) ptie_prep_resample(p->resampler[i], w->plane[i], w->plane[i], w->step);
+}
+
+/* Images to planes, up to a step; `raw`: neither flat fields nor equal means. */
+static ptie_status compute(const ptie_prepare *p, const work *w, const float *const *images, ptie_step last,
+                           bool raw) {
+    subtract_dark(p, w, images);
+    if (last < PTIE_STEP_SPLIT) return PTIE_OK;
+    if (p->splitter) ptie_prep_split(p->splitter, w->channel, w->image[0], w->step);
+    if (last < PTIE_STEP_MIX) return PTIE_OK;
+    mix(p, w);
+    if (p->reference) memcpy(w->plane[p->measured], p->reference, p->pixels * sizeof(float));
+    if (!raw && last >= PTIE_STEP_FLAT) flatten(p, w);
+    if (last >= PTIE_STEP_GAIN) apply_gains(p, w);
+    if (!raw && last >= PTIE_STEP_GAIN && p->rig.match_gain) PTIE_TRY(match_means(p, w));
+    if (last >= PTIE_STEP_REGISTRATION) bring_to_grid(p, w);
+    return PTIE_OK;
+}
+
+ptie_status ptie_prepare_raw(const ptie_prepare *p, const float *const *images, float *const *planes,
+                             ptie_step last, void *scratch) {
+    const work w = carve(p, &(ptie_slicer){.base = scratch});
+    PTIE_TRY(compute(p, &w, images, last, true));
+    for (int32_t i = 0; i < p->measured; i++) memcpy(planes[i], w.plane[i], p->pixels * sizeof(float));
+    return PTIE_OK;
+}
+
+/* Opaque pixels become the planes' common mean: there the planes do not differ. */
+static void fill_opaque(const ptie_prepare *p, const work *w) {
+    double level = 0;
+    if (!p->light) return;
+    for (int32_t i = 0; i < p->planes; i++) level += ptie_masked_mean(w->plane[i], p->light, p->pixels) / p->planes;
+    for (int32_t i = 0; i < p->planes; i++)
+        for (size_t k = 0; k < p->pixels; k++)
+            if (!p->light[k]) w->plane[i][k] = (float)level;
+}
+
+ptie_status ptie_prepare_run(const ptie_prepare *p, const float *const *images, float *const *maps,
+                             void *scratch) {
+    const work w = carve(p, &(ptie_slicer){.base = scratch});
+    float *const *found = w.plane;
+    if (p->last < PTIE_STEP_MIX) found = p->last == PTIE_STEP_SPLIT && p->splitter ? w.channel : w.image;
+    PTIE_TRY(compute(p, &w, images, p->last, false));
+    if (p->last == PTIE_STEP_MASK) fill_opaque(p, &w);
+    const size_t bytes = (size_t)p->shape.width_px * (size_t)p->shape.height_px * sizeof(float);
+    for (int32_t i = 0; i < p->shape.planes; i++) {
+        if (p->last == PTIE_STEP_MASK && p->rig.binning > 1)
+            ptie_bin(maps[i], found[i], p->width, p->height, p->rig.binning);
+        else
+            memcpy(maps[i], found[i], bytes);
     }
     return PTIE_OK;
 }

@@ -51,13 +51,14 @@ static ptie_status same_shape(const ptie_source *source, int32_t i) {
     return PTIE_OK;
 }
 
-/* Image i of a frame. */
-static ptie_status open_image(ptie_source *source, int32_t i, const ptie_run_params *params, ptie_role role) {
+/* Image i of a frame.  A still recording without data sets serves all planes. */
+static ptie_status open_image(ptie_source *source, int32_t i, const ptie_run_params *params, ptie_role role,
+                              bool still) {
     const ptie_plane *plane = &params->rig->plane[role];
     char *path = source->path[i];
     if (params->plane[role])
         PTIE_TRY(join(path, params->plane[role], plane->source));
-    else if (i == 0)
+    else if (i == 0 || still)
         PTIE_TRY(join(path, params->recording, plane->source));
     else
         PTIE_TRY(join_beside(path, source, params->recording ? params->recording : source->path[0], plane->source,
@@ -79,13 +80,13 @@ static ptie_status check_files(const ptie_run_params *params) {
     return PTIE_OK;
 }
 
-static ptie_status open_images(ptie_source *source, const ptie_run_params *params) {
+static ptie_status open_images(ptie_source *source, const ptie_run_params *params, bool still) {
     const ptie_rig *rig = params->rig;
     PTIE_TRY(check_files(params));
     int32_t i = 0;
     for (int role = 0; role < PTIE_ROLES; role++) {
         if (!rig->plane[role].used) continue;
-        PTIE_TRY(open_image(source, i++, params, (ptie_role)role));
+        PTIE_TRY(open_image(source, i++, params, (ptie_role)role, still));
         if (rig->layout != PTIE_LAYOUT_SEPARATE) break; /* all planes are in one image */
     }
     const ptie_recording_info *info = ptie_io_info(source->recording[0]);
@@ -96,15 +97,53 @@ static ptie_status open_images(ptie_source *source, const ptie_run_params *param
     return PTIE_OK;
 }
 
-ptie_status ptie_source_open(ptie_source **out, const ptie_run_params *params) {
+static ptie_status open_source(ptie_source **out, const ptie_run_params *params, bool still) {
     *out = NULL;
     ptie_source *source;
     PTIE_TRY(ptie_alloc_status(&source, 1, sizeof *source, "run"));
-    ptie_status status = open_images(source, params);
+    ptie_status status = open_images(source, params, still);
     if (status == PTIE_OK)
         *out = source;
     else
         ptie_source_close(source);
+    return status;
+}
+
+ptie_status ptie_source_open(ptie_source **out, const ptie_run_params *params) {
+    return open_source(out, params, false);
+}
+
+static ptie_status add_frames(ptie_source *source, double *sum, float *const *mean, size_t count) {
+    for (int64_t t = 0; t < source->shape.frames; t++) {
+        PTIE_TRY(ptie_source_read(source, t, mean));
+        for (int32_t k = 0; k < source->shape.images; k++)
+            for (size_t i = 0; i < count; i++) sum[(size_t)k * count + i] += (double)mean[k][i];
+    }
+    return PTIE_OK;
+}
+
+static ptie_status average(ptie_source *source, const ptie_source_shape *like, float *const *mean, const char *path) {
+    const ptie_source_shape *shape = &source->shape;
+    const size_t count = (size_t)shape->width_px * (size_t)shape->height_px, images = (size_t)shape->images;
+    double *sum;
+    if (shape->width_px != like->width_px || shape->height_px != like->height_px)
+        return PTIE_FAIL(PTIE_ESIZE, "%s: frame size differs from the recording's (expected %d x %d px, found "
+                                     "%d x %d)", path, like->width_px, like->height_px, shape->width_px,
+                         shape->height_px);
+    PTIE_TRY(ptie_alloc_status(&sum, images * count, sizeof *sum, path));
+    ptie_status status = add_frames(source, sum, mean, count);
+    for (size_t k = 0; k < images && status == PTIE_OK; k++)
+        for (size_t i = 0; i < count; i++) mean[k][i] = (float)(sum[k * count + i] / (double)shape->frames);
+    ptie_free(sum);
+    return status;
+}
+
+ptie_status ptie_source_mean(float *const *mean, const ptie_source_shape *like, const ptie_rig *rig,
+                             const char *path) {
+    ptie_source *source;
+    PTIE_TRY(open_source(&source, &(ptie_run_params){.rig = rig, .recording = path}, true));
+    ptie_status status = average(source, like, mean, path);
+    ptie_source_close(source);
     return status;
 }
 

@@ -27,4 +27,9 @@ ptie_source_shape ptie_source_get_shape(const ptie_source *source);
 /* images (out): shape.images maps of (height, width). */
 ptie_status ptie_source_read(ptie_source *source, int64_t frame, float *const *images);
 
+/* mean (out): as many maps as a frame like `like` has images: the mean over all frames of a still recording (dark,
+   no flow) that was taken with the same rig.  A file without data sets serves all planes. */
+ptie_status ptie_source_mean(float *const *mean, const ptie_source_shape *like, const ptie_rig *rig,
+                             const char *path);
+
 #endif

@@ -16,6 +16,8 @@ The overview
     run          recording -> phase -> denoised phase -> metrics, in one pass
     metrics      MGM, SBR, BNS and CNR over frames and regions
     convert      a recording as another kind of file, or a part of it
+    prepare      recording -> planes, as the solver sees them or after any step
+    rig          rig files: how a set-up is built
     info         what is in a file, a model, a preset, this machine
     bench        how fast all of it is on this machine
   

@@ -2,10 +2,13 @@
 /* Rig files: what is read, what is refused and with which line. */
 #include "support/support.h"
 
+#include <stdlib.h>
+
 #include <ptie/rig.h>
 
 #include "base/memory.h"
 #include "run/rig.h"
+#include "run/rig_keys.h"
 
 #define OPTICS "[optics]\nwavelength = 532 nm\npixel = 20 um\ndefocus = 10 mm\n"
 #define MOSAIC OPTICS "[planes]\nlayout = mosaic\nmosaic = crysta\n"
@@ -28,8 +31,7 @@ static void a_full_rig_is_read(void **state) {
         load("[optics]\nwavelength = 633 nm\npixel = 20 um ; on the sensor\nmagnification = 0.5\n"
              "[planes]\nset = reference\nlayout = mosaic\nmosaic = 90 45 135 0\nroi_x = 1\nroi_y = 3\n"
              "plus = 0.98*45 + 0.02*135\n"
-             "[plus]\ndefocus = 7 mm\ngain = 1.1\nshift_x = 0.25\nshift_y = -1.5\nmagnification = 1.002\n"
-             "rotation = 0.5 mrad\n"
+             "[plus]\ndefocus = 7 mm\ngain = 1.1\n"
              "[recording]\nframe_rate = 25 kHz\nreference = noflow.png\ndark = /d/dark.tif\nstill_frames = 3:50\n"
              "[camera]\nsaturation = 4095\nelectrons_per_count = 2.5\nread_noise = 24\n"
              "[preprocess]\ndemosaic = fourier\nflat_field = no\nmatch_gain = no\nmask_below = 10 %\n"
@@ -43,8 +45,7 @@ static void a_full_rig_is_read(void **state) {
     assert_memory_equal(rig.angle_deg, ((int32_t[]){90, 45, 135, 0}), sizeof rig.angle_deg);
     assert_true(rig.roi_x == 1 && rig.roi_y == 3);
     assert_memory_equal(plus->mix, ((double[]){0, 0.98, 0.02, 0}), sizeof plus->mix);
-    assert_true(plus->defocus_m == 7e-3 && plus->gain == 1.1 && plus->shift_x_px == 0.25 &&
-                plus->shift_y_px == -1.5 && plus->magnification == 1.002 && plus->rotation_rad == 5e-4);
+    assert_true(plus->defocus_m == 7e-3 && plus->gain == 1.1);
     assert_string_equal(rig.reference, support_temporary("noflow.png")); /* relative to the rig */
     assert_string_equal(rig.dark, "/d/dark.tif");
     assert_true(rig.still_first == 3 && rig.still_end == 50);
@@ -74,6 +75,10 @@ static void defaults_and_unequal_steps(void **state) {
     rig = load(OPTICS "[planes]\nset = five\n[plus2]\ndefocus = 30 mm\n");
     const double z_m[PTIE_ROLES] = {10e-3, -10e-3, 0, 30e-3, -20e-3};
     for (int i = 0; i < PTIE_ROLES; i++) assert_true(rig.plane[i].used && rig.plane[i].defocus_m == z_m[i]);
+    rig = load(OPTICS "[minus]\nshift_x = 0.25\nshift_y = -1.5\nmagnification = 1.002\nrotation = 0.5 mrad\n");
+    const ptie_plane *minus = &rig.plane[PTIE_MINUS];
+    assert_true(minus->shift_x_px == 0.25 && minus->shift_y_px == -1.5 && minus->magnification == 1.002 &&
+                minus->rotation_rad == 5e-4);
 }
 
 /* Every layout's channels, by name; printed and read back they are the same rig, byte by byte. */
@@ -129,6 +134,7 @@ static void bad_rigs_get_one_line(void **state) {
         {"[planes]\nmosaic = 0 45 90 45\n", PTIE_EFORMAT, "four different angles"},
         {"[planes]\nmosaic = 0 45 90 180\n", PTIE_EFORMAT, "four different angles"},
         {"[planes]\nmosaic = 0 45 90 135 0\n", PTIE_EFORMAT, "four different angles"},
+        {"[plus]\nshift_x = 2\n", PTIE_ENAME, "unknown key 'shift_x' in [plus]"},
         {"[recording]\nstill_frames = 5:5\n", PTIE_EFORMAT, "frames such as 0:100"},
         {"[flow]\nstill = 1,2,0,4\n", PTIE_EFORMAT, "a rectangle x,y,width,height"},
         {MOSAIC "plus = 0\n", PTIE_EINVAL, "missing key 'minus' in [planes]"},
@@ -150,12 +156,69 @@ static void bad_rigs_get_one_line(void **state) {
     assert_int_equal(rig.polarity, 7); /* untouched by every failure */
 }
 
+static char *edit(const char *from, const char *section, const char *key, const char *value) {
+    const ptie_rig_setting setting = {section, key, value};
+    char to[256];
+    size_t bytes;
+    snprintf(to, sizeof to, "%s", support_temporary("edited.ini"));
+    assert_ok(ptie_rig_edit(to, from ? write_rig(from) : NULL, &setting, 1, true));
+    return (char *)support_read(to, &bytes);
+}
+
+/* A key is replaced, uncovered, added to its section, or brings its section along; all else stays. */
+static void editing_keeps_the_rest(void **state) {
+    (void)state;
+    static const struct {
+        const char *before, *key, *after;
+    } cases[] = {
+        {"[minus]\ngain = 1     ; measured\n; end\n", "gain", "[minus]\ngain = 1.25  ; measured\n; end\n"},
+        {"[minus]\r\n  gain:1 ; x\r\n", "gain", "[minus]\r\n  gain:1.25 ; x\r\n"},
+        {"[minus]\n; gain = 1            ; of it\nshift_x = 1\n", "gain",
+         "[minus]\ngain = 1.25           ; of it\nshift_x = 1\n"},
+        {"[minus]\nshift_x = 1\n\n[flow]\n", "gain", "[minus]\nshift_x = 1\ngain = 1.25\n\n[flow]\n"},
+        {"[flow]\npolarity = auto", "gain", "[flow]\npolarity = auto\n\n[minus]\ngain = 1.25\n"},
+        {"[plus]\ngain = 3\n[minus]\n", "gain", "[plus]\ngain = 3\n[minus]\ngain = 1.25\n"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char before[512], after[512];
+        snprintf(before, sizeof before, "[optics]\nwavelength = 532 nm\npixel = 20 um\ndefocus = 1 mm\n%s",
+                 cases[i].before);
+        snprintf(after, sizeof after, "[optics]\nwavelength = 532 nm\npixel = 20 um\ndefocus = 1 mm\n%s",
+                 cases[i].after);
+        char *found = edit(before, "minus", cases[i].key, "1.25");
+        assert_string_equal(found, after);
+        free(found);
+    }
+}
+
+static void a_new_rig_has_every_key_and_loads(void **state) {
+    (void)state;
+    ptie_rig rig;
+    char *text = edit(NULL, "planes", "set", "five");
+    assert_ok(ptie_rig_load(&rig, write_rig(text)));
+    assert_true(rig.plane[PTIE_MINUS2].used && rig.plane[PTIE_PLUS2].defocus_m == 20e-3);
+    for (size_t i = 0; i < ptie_rig_key_count; i++) {
+        char line[80];
+        snprintf(line, sizeof line, "%s = ", ptie_rig_keys[i].name);
+        assert_non_null(strstr(text, line));
+        assert_non_null(ptie_rig_keys[i].help);
+    }
+    free(text);
+    const ptie_rig_setting bad = {"optics", "pixel", "20"};
+    assert_fails(ptie_rig_edit(support_temporary("bad.ini"), NULL, &bad, 1, true), PTIE_EFORMAT,
+                 "bad.ini:6: pixel: expected a length");
+    assert_false(support_exists(support_temporary("bad.ini")));
+    assert_fails(ptie_rig_edit(support_temporary("edited.ini"), NULL, NULL, 0, false), PTIE_EEXIST, "edited.ini");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_full_rig_is_read),
         cmocka_unit_test(defaults_and_unequal_steps),
         cmocka_unit_test(every_layout_prints_as_it_reads),
         cmocka_unit_test(bad_rigs_get_one_line),
+        cmocka_unit_test(editing_keeps_the_rest),
+        cmocka_unit_test(a_new_rig_has_every_key_and_loads),
     };
     return cmocka_run_group_tests_name("rig", tests, NULL, NULL);
 }
