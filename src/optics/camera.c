@@ -137,10 +137,10 @@ static ptie_status make_sensor(ptie_camera *camera, uint64_t sensor) {
 
 static ptie_status prepare(ptie_camera *camera) {
     const ptie_camera_params *p = &camera->params;
-    const ptie_placement minus = {p->minus_shift_x_px, p->minus_shift_y_px, p->minus_magnification,
+    const ptie_similarity minus = {p->minus_shift_x_px, p->minus_shift_y_px, p->minus_magnification,
                                   p->minus_rotation_rad};
     if (minus.shift_x_px != 0 || minus.shift_y_px != 0 || minus.magnification != 1 || minus.rotation_rad != 0)
-        PTIE_TRY(ptie_similarity_create(&camera->minus, camera->width_px, camera->height_px, &minus));
+        PTIE_TRY(ptie_displacer_create(&camera->minus, camera->width_px, camera->height_px, &minus));
     for (int32_t s = 0; s < camera->sensors; s++) PTIE_TRY(make_sensor(camera, (uint64_t)s));
     return PTIE_OK;
 }
@@ -166,7 +166,7 @@ ptie_status ptie_camera_plan(ptie_camera **out, const ptie_camera_params *params
 
 void ptie_camera_free(ptie_camera *camera) {
     if (!camera) return;
-    ptie_similarity_free(camera->minus);
+    ptie_displacer_free(camera->minus);
     for (int32_t s = 0; s < PTIE_MOST_SENSORS; s++) {
         ptie_free(camera->sensor[s].plus);
         ptie_free(camera->sensor[s].minus);
@@ -227,7 +227,7 @@ void ptie_camera_capture(const ptie_camera *camera, float *const *counts, const 
     assert(frame >= 0 && frame < INT64_C(1) << 48);
     if (exposure == PTIE_EXPOSE_DARK) plus = minus = NULL;
     if (minus && camera->minus) {
-        ptie_similarity_run(camera->minus, scratch, minus);
+        ptie_displacer_run(camera->minus, scratch, minus);
         minus = scratch;
     }
     for (int32_t s = 0; s < camera->sensors; s++) {

@@ -6,7 +6,7 @@
 #include <ptie/camera.h>
 
 #include "base/status.h"
-#include "optics/similarity.h"
+#include "optics/displace.h"
 
 /* What a sensor makes of the planes, pixel by pixel: electrons = plus I+ + minus I-, counts begin at black. */
 typedef struct ptie_sensor {
@@ -21,7 +21,7 @@ struct ptie_camera {
     int32_t width_px, height_px, sensors;
     double pixel_m;
     uint64_t seed;
-    ptie_similarity *minus; /* NULL: lies where the plus plane lies */
+    ptie_displacer *minus; /* NULL: lies where the plus plane lies */
     ptie_sensor sensor[PTIE_MOST_SENSORS];
 };
 

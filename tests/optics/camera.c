@@ -44,13 +44,13 @@ static double wave(double x, double y, double period, double heading) {
     return 1 + 0.5 * cos(2 * PI * (x * cos(heading) + y * sin(heading)) / period + 0.3);
 }
 
-static double worst_displacement(const ptie_placement *p, double period, double heading) {
+static double worst_displacement(const ptie_similarity *p, double period, double heading) {
     float *in = image(), *out = image();
-    ptie_similarity *similarity;
+    ptie_displacer *displacer;
     double worst = 0;
     for (int i = 0; i < PIXELS; i++) in[i] = (float)wave(i % W, i / W, period, heading);
-    assert_ok(ptie_similarity_create(&similarity, W, H, p));
-    ptie_similarity_run(similarity, out, in);
+    assert_ok(ptie_displacer_create(&displacer, W, H, p));
+    ptie_displacer_run(displacer, out, in);
     for (int y = 8; y < H - 8; y++)
         for (int x = 8; x < W - 8; x++) {
             /* Undo shift, magnification and rotation, one after the other. */
@@ -60,14 +60,14 @@ static double worst_displacement(const ptie_placement *p, double period, double 
             const double expected = wave(c * u + s * v + (W - 1) / 2.0, c * v - s * u + (H - 1) / 2.0, period, heading);
             worst = fmax(worst, fabs((double)out[y * W + x] - expected));
         }
-    ptie_similarity_free(similarity);
+    ptie_displacer_free(displacer);
     free(in), free(out);
     return worst;
 }
 
 static void a_moved_plane_shows_the_object_where_it_should(void **state) {
     (void)state;
-    const ptie_placement placements[] = {
+    const ptie_similarity placements[] = {
         {1.7, -2.3, 1, 0}, {0, 0, 1.012, 0}, {0, 0, 1, 0.01}, {-0.6, 1.1, 0.991, -0.008}};
     for (size_t i = 0; i < sizeof placements / sizeof *placements; i++)
         for (int k = 0; k < 8; k++) {
@@ -79,7 +79,7 @@ static void a_moved_plane_shows_the_object_where_it_should(void **state) {
                             1e-3 + 1.5 * PI / period / 1024);
         }
     /* Whole pixels are copies. */
-    assert_near(worst_displacement(&(ptie_placement){3, -2, 1, 0}, 3, 0.7), 0, 3e-7);
+    assert_near(worst_displacement(&(ptie_similarity){3, -2, 1, 0}, 3, 0.7), 0, 3e-7);
 }
 
 static void a_cell_sees_what_malus_says(void **state) {

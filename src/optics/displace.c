@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Resampling with a windowed sinc of eight pixels per axis, from a table of 512 places between two pixels
    (docs/math.md C3). */
-#include "optics/similarity.h"
+#include "optics/displace.h"
 
 #include <math.h>
 
@@ -12,7 +12,7 @@
 
 enum { TAPS = 8, BEFORE = TAPS / 2 - 1, STEPS = 512 };
 
-struct ptie_similarity {
+struct ptie_displacer {
     int32_t width, height;
     double xx, xy, yx, yy, x0, y0; /* input pixel = matrix * output pixel + offset */
     float weight[STEPS][TAPS];     /* sum 1 */
@@ -35,7 +35,7 @@ static double kernel(double d) {
     return sinc * bessel_i0(shape * sqrt(1 - d * d / (edge * edge))) / bessel_i0(shape);
 }
 
-static void fill_weights(ptie_similarity *s) {
+static void fill_weights(ptie_displacer *s) {
     for (int step = 0; step < STEPS; step++) {
         double weight[TAPS], sum = 0;
         for (int k = 0; k < TAPS; k++) sum += weight[k] = kernel(k - BEFORE - (double)step / STEPS);
@@ -43,11 +43,11 @@ static void fill_weights(ptie_similarity *s) {
     }
 }
 
-ptie_status ptie_similarity_create(ptie_similarity **out, int32_t width_px, int32_t height_px,
-                                   const ptie_placement *p) {
-    ptie_similarity *s;
+ptie_status ptie_displacer_create(ptie_displacer **out, int32_t width_px, int32_t height_px,
+                                   const ptie_similarity *p) {
+    ptie_displacer *s;
     *out = NULL;
-    PTIE_TRY(ptie_alloc_status(&s, 1, sizeof *s, "similarity"));
+    PTIE_TRY(ptie_alloc_status(&s, 1, sizeof *s, "displaced plane"));
     const double cosine = cos(p->rotation_rad) / p->magnification,
                  sine = sin(p->rotation_rad) / p->magnification;
     const double cx = (width_px - 1) / 2.0, cy = (height_px - 1) / 2.0;
@@ -60,8 +60,8 @@ ptie_status ptie_similarity_create(ptie_similarity **out, int32_t width_px, int3
     return PTIE_OK;
 }
 
-void ptie_similarity_free(ptie_similarity *similarity) {
-    ptie_free(similarity);
+void ptie_displacer_free(ptie_displacer *displacer) {
+    ptie_free(displacer);
 }
 
 /* Pixel and place between it and the next, to the nearest step. */
@@ -84,7 +84,7 @@ PTIE_INLINE float inner_value(const float *in, size_t pitch, const float *wx, co
 }
 
 /* The same where the eight pixels may lie outside. */
-static float edge_value(const ptie_similarity *s, const float *in, int32_t x, int32_t y, const float *wx,
+static float edge_value(const ptie_displacer *s, const float *in, int32_t x, int32_t y, const float *wx,
                         const float *wy) {
     float patch[TAPS * TAPS];
     for (int j = 0; j < TAPS; j++)
@@ -94,7 +94,7 @@ static float edge_value(const ptie_similarity *s, const float *in, int32_t x, in
     return inner_value(patch, TAPS, wx, wy);
 }
 
-PTIE_CLONES static void resample_row(const ptie_similarity *s, float *out, const float *in, int32_t row) {
+PTIE_CLONES static void resample_row(const ptie_displacer *s, float *out, const float *in, int32_t row) {
     const int32_t w = s->width, h = s->height;
     for (int32_t column = 0; column < w; column++) {
         int32_t step_x, step_y;
@@ -107,7 +107,7 @@ PTIE_CLONES static void resample_row(const ptie_similarity *s, float *out, const
     }
 }
 
-void ptie_similarity_run(const ptie_similarity *s, float *out, const float *in) {
+void ptie_displacer_run(const ptie_displacer *s, float *out, const float *in) {
     for (int32_t row = 0; row < s->height; row++)
         resample_row(s, out + (size_t)row * (size_t)s->width, in, row);
 }
