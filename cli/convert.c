@@ -24,7 +24,7 @@ static const char notes[] =
 typedef struct settings {
     compute_options compute;
     const char *input, *output;
-    frame_range frames;
+    ptie_frame_range frames;
     ptie_rect roi;
     value_range range;
     bool compress;

@@ -55,9 +55,10 @@ int check_maps_frame(const ptie_run_params *run, int64_t frame) {
     ptie_recording *recording;
     path_of_plus(path, run);
     if (ptie_recording_open(&recording, path) != PTIE_OK) return GO_ON; /* the run says why */
-    int64_t frames = ptie_recording_get_info(recording)->frames, taken = run->count;
+    const ptie_frame_range f = run->frames;
+    const int64_t end = f.end ? f.end : ptie_recording_get_info(recording)->frames;
+    const int64_t taken = f.first < end ? (end - f.first - 1) / f.step + 1 : 0;
     ptie_recording_close(recording);
-    if (taken == 0 && run->first < frames) taken = (frames - run->first - 1) / run->step + 1;
     if (taken == 0 || frame < taken) return GO_ON;
     return misused("--figure-frame: expected 0..%lld of the frames processed, or -1, found %lld",
                    (long long)taken - 1, (long long)frame);
@@ -65,7 +66,7 @@ int check_maps_frame(const ptie_run_params *run, int64_t frame) {
 
 static ptie_status collect(maps *m, const ptie_run_params *run, int64_t frame, double pixel_m) {
     char path[PATH_BYTES];
-    int64_t recorded = run->first + frame * run->step;
+    int64_t recorded = run->frames.first + frame * run->frames.step;
     ptie_panel intensity = {
         .title = "intensity", .colormap = PTIE_GRAY, .pixel_m = pixel_m / run->rig->binning};
     ptie_panel phase = {.unit = "rad", .colormap = PTIE_DIVERGING, .pixel_m = pixel_m};

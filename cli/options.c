@@ -107,7 +107,7 @@ static const char *take_frame(const char *text, int64_t *value) {
 }
 
 static int set_frames(const command_usage *u, const option *o, const char *text) {
-    frame_range range = {.step = 1};
+    ptie_frame_range range = {.step = 1};
     const char *at = take_frame(text, &range.first);
     if (at && at > text && !*at && range.first < INT64_MAX) {
         range.end = range.first + 1; /* one frame */
@@ -119,11 +119,11 @@ static int set_frames(const command_usage *u, const option *o, const char *text)
         if (!at || *at || end <= range.first || range.step < 1) at = NULL;
     }
     if (!at) return wrong_value(u, o, "frames a:b:step, b not included, such as 0:100:2", text);
-    *(frame_range *)o->value = range;
+    *(ptie_frame_range *)o->value = range;
     return GO_ON;
 }
 
-int64_t frames_in(frame_range range) {
+int64_t frames_in(ptie_frame_range range) {
     return range.end ? (range.end - range.first - 1) / range.step + 1 : 0;
 }
 

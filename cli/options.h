@@ -3,7 +3,7 @@
 #ifndef CLI_OPTIONS_H
 #define CLI_OPTIONS_H
 
-#include <ptie/metrics.h>
+#include <ptie/run.h>
 #include <ptie/text.h>
 
 typedef enum option_kind {
@@ -16,7 +16,7 @@ typedef enum option_kind {
     OPTION_CHOICE,   /* int: index into `choices` */
     OPTION_SIZE,     /* frame_size: "256" or "320x240" */
     OPTION_RECT,     /* ptie_rect: "x,y,w,h" */
-    OPTION_FRAMES,   /* frame_range: "a:b:step" as Python slices, "7" for one frame */
+    OPTION_FRAMES,   /* ptie_frame_range: "a:b:step" as Python slices, "7" for one frame */
     OPTION_RANGE,    /* value_range: "low:high" */
     OPTION_LIST      /* number_list: "8,16,32" */
 } option_kind;
@@ -24,10 +24,6 @@ typedef enum option_kind {
 typedef struct frame_size {
     int32_t width, height;
 } frame_size;
-
-typedef struct frame_range {
-    int64_t first, end, step; /* end: one behind the last, 0 = to the end */
-} frame_range;
 
 typedef struct value_range {
     double low, high; /* equal: not given */
@@ -78,7 +74,7 @@ int parse_options(const command_usage *usage, int argc, char **argv, operand_lis
 bool was_given(const command_usage *usage, const operand_list *operands, const char *name);
 
 /* How many frames a range takes; 0 = to the end. */
-int64_t frames_in(frame_range range);
+int64_t frames_in(ptie_frame_range range);
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 

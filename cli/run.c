@@ -81,11 +81,9 @@ static int parse(settings *s, const char *name, bool with_model, int argc, char 
          .help = "no-flow recording, instead of the rig's"},
         {0, "dark", OPTION_TEXT, &p->dark, "FILE", .help = "recording without light, instead of the rig's"},
         {0, "mask", OPTION_TEXT, &p->mask, "FILE", .help = "image of what is opaque (0), instead of the rig's"},
-        {0, "first", OPTION_INT64, &p->first, "N", .high = INT64_MAX, .help = "first frame"},
-        {'n', "count", OPTION_INT64, &p->count, "N", .high = INT64_MAX,
-         .help = "frames; 0 = to the end"},
-        {0, "step", OPTION_INT64, &p->step, "N", .low = 1, .high = INT64_MAX,
-         .help = "every N-th frame"},
+        {0, "frames", OPTION_FRAMES, &p->frames, "a:b:step",
+         .help = "frames a, a + step, ... below b; each may be left out"},
+        {0, "resume", OPTION_FLAG, &p->resume, .help = "go on where an interrupted run stopped"},
         {0, "truth", OPTION_TEXT, &p->truth, "FILE", .help = "true phase to compare with"},
         {0, "jet", OPTION_RECT, &p->jet, "x,y,w,h",
          .help = "region of the flow, pixels of the phase"},
@@ -132,7 +130,8 @@ static void print_summary(const settings *s, const ptie_run_summary *r) {
     int count = 1;
     if (s->params.model) columns[count++] = (measured){"denoised", "denoised", r->denoised};
     if (s->params.truth) columns[count++] = (measured){"truth", "truth", r->truth};
-    double rate = r->seconds > 0 ? (double)r->frames / r->seconds : 0;
+    const int64_t done = r->frames - r->resumed;
+    const double rate = r->seconds > 0 ? (double)done / r->seconds : 0;
     if (s->json) {
         printf("{\n  \"output\": ");
         json_text(stdout, s->params.output);
@@ -158,6 +157,15 @@ static ptie_status draw(const settings *s, const ptie_run_summary *summary) {
     return draw_maps(s->figure, &s->params, frame, summary->pixel_m);
 }
 
+/* What belongs to the result and is no number of it. */
+static void tell(const settings *s, ptie_status status, const ptie_run_summary *r) {
+    if (status != PTIE_OK && r->frames > 0)
+        say("%s.part holds %lld frames; --resume goes on from there", s->params.output,
+            (long long)r->frames);
+    for (int32_t i = 0; status == PTIE_OK && i < r->warnings; i++)
+        say("%s: %s", s->params.output, r->warning[i]);
+}
+
 static ptie_status compute_run(settings *s, const char *name, ptie_run_summary *summary) {
     progress_bar progress;
     ptie_ctx *ctx = NULL;
@@ -172,10 +180,7 @@ static ptie_status compute_run(settings *s, const char *name, ptie_run_summary *
         status = ptie_run(ctx, &s->params, summary, progress_callback(&progress));
         progress_end(&progress);
     }
-    if (status == PTIE_OK && !summary->has_regions)
-        say("ptie: %s: no flow to tell from the background, so no metrics of regions "
-            "(name them with --jet and --background)",
-            s->params.output);
+    tell(s, status, summary);
     if (status == PTIE_OK && s->figure) status = draw(s, summary);
     if (status == PTIE_OK) print_summary(s, summary);
     ptie_ctx_free(ctx);
@@ -186,7 +191,7 @@ static ptie_status compute_run(settings *s, const char *name, ptie_run_summary *
 static int pipeline(bool with_model, int argc, char **argv) {
     const char *name = with_model ? "run" : "reconstruct";
     settings s = {.compute = COMPUTE_DEFAULTS, .figure_frame = -1};
-    ptie_run_summary summary;
+    ptie_run_summary summary = {0};
     ptie_rig_init(&s.rig);
     ptie_run_params_init(&s.params);
     int code = parse(&s, name, with_model, argc, argv);

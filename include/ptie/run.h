@@ -8,6 +8,9 @@
 #include <ptie/recording.h>
 #include <ptie/rig.h>
 
+/* Frames first, first + step, ... below end, as a Python slice; end 0 = all there are. */
+typedef struct ptie_frame_range { int64_t first, end, step; } ptie_frame_range;
+
 typedef struct ptie_run_params {
     uint32_t struct_size;      /* set by ptie_run_params_init */
     const ptie_rig *rig;
@@ -21,8 +24,9 @@ typedef struct ptie_run_params {
     const char *metrics_csv;   /* one row per frame, or NULL */
     const char *provenance;    /* command line to keep in the file, or NULL */
     ptie_rect jet, background; /* regions of the metrics; all 0: proposed from the result */
-    int64_t first, count, step;/* frames to take; count 0 = to the end; default 0, 0, 1 */
+    ptie_frame_range frames;   /* default 0, 0, 1 */
     bool overwrite;
+    bool resume;               /* go on from "<output>.part" where it is there; settings must be the same */
     bool fast;                 /* as ptie_denoiser_params, default false */
 } ptie_run_params;
 
@@ -37,23 +41,36 @@ typedef struct ptie_run_row {    /* one kind of map: the TIE phase, or the denoi
     ptie_stat residual; /* of the map sent back to the planes (docs/math.md Q11) */
 } ptie_run_row;
 
+enum { PTIE_RUN_MOST_WARNINGS = 16, PTIE_RUN_WARNING_BYTES = 240 };
+
 typedef struct ptie_run_summary {
     int64_t frames;
+    int64_t resumed;             /* of them, those that an interrupted run had finished */
     int32_t width_px, height_px; /* of the phase, after binning */
     double pixel_m;
     ptie_run_row phase, denoised;   /* denoised: all NaN without a model */
     ptie_run_row truth;             /* the true phase by the same measures; all NaN without truth */
+    ptie_stat noise_rad; /* what the planes' white noise, as measured, makes of the phase (M8) */
     bool has_regions; /* false: none given and none to propose, so MGM, SBR, BNS and CNR are NaN */
+    int32_t warnings; /* lines in `warning`: saturation, unequal planes, a drifting background, ... */
+    char warning[PTIE_RUN_MOST_WARNINGS][PTIE_RUN_WARNING_BYTES];
     double seconds;
 } ptie_run_summary;
 
-/* Runs the pipeline in constant memory (blocks of frames; results do not depend on block or threads) and
-   writes `output` (written whole or not at all):
-     /entry/data/phase, /entry/data/denoised  [T, H, W] float32, rad
-     /entry/metrics/...                       [T]
-     /entry/process_1                         program, version, parameters
-   A recording without flow has no regions to propose: its maps are kept, and summary->has_regions is false.
-   Errors: those of its parts; PTIE_ESIZE (planes, reference or truth of another size or length). */
+/* Runs the pipeline as a stream: frames are read ahead, computed on all threads and written in order, in memory
+   that does not grow with the recording; results depend neither on threads nor on interruptions.  docs/formats.md
+   says what `output` holds.
+
+   `output` takes its final size at once and is "<output>.part" until it is complete.  Meanwhile it is a valid file
+   that others may read, and so it stays whenever the run ends: after a failure, PTIE_ECANCELLED or a kill, the
+   finished frames (summary->frames says how many; none: nothing is left) are what `resume` goes on from.
+   `metrics_csv` grows row by row in the same way.
+
+   Regions that are not given are proposed from the mean of the first 32 frames.  A recording without flow has none
+   to propose: its maps are kept, and summary->has_regions is false.
+   Errors: those of its parts; PTIE_ESIZE (planes, reference or truth of another size or length); PTIE_EEXIST (the
+   output, or an interrupted run's, and neither overwrite nor resume); PTIE_EINVAL (resume with other settings:
+   names the first). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_run(ptie_ctx *ctx, const ptie_run_params *params,
                                              ptie_run_summary *summary, ptie_progress progress);
 

@@ -9,7 +9,7 @@
 #include "run/run.h"
 
 void ptie_run_params_init(ptie_run_params *params) {
-    *params = (ptie_run_params){.struct_size = sizeof *params, .step = 1};
+    *params = (ptie_run_params){.struct_size = sizeof *params, .frames = {.step = 1}};
 }
 
 /* The rig that counts: the caller's, with the caller's files. */
@@ -31,9 +31,9 @@ ptie_status ptie_run(ptie_ctx *ctx, const ptie_run_params *params, ptie_run_summ
     ptie_run_params_init(&own);
     PTIE_TRY(ptie_params_read(&own, sizeof own, params, where));
     PTIE_TRY(ptie_check_pointer(own.output, where, "output"));
-    PTIE_TRY(ptie_check_integer(own.first, 0, INT64_MAX, where, "first"));
-    PTIE_TRY(ptie_check_integer(own.count, 0, INT64_MAX, where, "count"));
-    PTIE_TRY(ptie_check_integer(own.step, 1, INT64_MAX, where, "step"));
+    PTIE_TRY(ptie_check_integer(own.frames.first, 0, INT64_MAX, where, "frames.first"));
+    PTIE_TRY(ptie_check_integer(own.frames.end, 0, INT64_MAX, where, "frames.end"));
+    PTIE_TRY(ptie_check_integer(own.frames.step, 1, INT64_MAX, where, "frames.step"));
     PTIE_TRY(read_rig(&rig, &own));
     own.rig = &rig;
     return ptie_run_pipeline(&ctx->engine, &own, summary, progress);

@@ -13,6 +13,7 @@ struct ptie_frame_plan {
     int32_t polarity;
     ptie_solver *solver;
     ptie_denoiser *denoiser; /* NULL without a model */
+    double noise_rad;        /* per unit of relative noise */
     int32_t workers;
     void **scratch; /* one block per worker */
 };
@@ -29,6 +30,7 @@ static ptie_status build(ptie_frame_plan *plan, const ptie_engine *engine, const
                          const ptie_model *model, const ptie_denoiser_params *params) {
     const ptie_solver_params solver = ptie_rig_solver(rig, plan->width, plan->height);
     PTIE_TRY(ptie_tie_plan(&plan->solver, &solver));
+    plan->noise_rad = ptie_tie_noise_rad(plan->solver, 1);
     if (model)
         PTIE_TRY(ptie_nn_denoiser(&plan->denoiser, engine, model, plan->width, plan->height,
                                   params));
@@ -79,4 +81,8 @@ ptie_status ptie_frame_solve(const ptie_frame_plan *plan, int32_t worker, float 
     if (plan->zero_border) pin_border(phase, plan->width, plan->height, scratch);
     if (!plan->denoiser) return PTIE_OK;
     return ptie_nn_denoise_rad(plan->denoiser, denoised, phase, plan->polarity, scratch);
+}
+
+double ptie_frame_noise_rad(const ptie_frame_plan *plan, double sigma) {
+    return sigma * plan->noise_rad;
 }

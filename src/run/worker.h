@@ -20,4 +20,7 @@ void ptie_frame_plan_free(ptie_frame_plan *plan); /* NULL is fine */
 ptie_status ptie_frame_solve(const ptie_frame_plan *plan, int32_t worker, float *phase, float *denoised,
                              const float *const *planes);
 
+/* Standard deviation of the phase that white noise of relative deviation sigma in each plane causes. */
+double ptie_frame_noise_rad(const ptie_frame_plan *plan, double sigma);
+
 #endif

@@ -36,7 +36,7 @@ What another program is writing is left to it
   > import fcntl, subprocess
   > with open("jet.h5.part", "wb") as part:
   >     part.write(b"half")
-  >     fcntl.flock(part, fcntl.LOCK_EX)
+  >     fcntl.lockf(part, fcntl.LOCK_EX)
   >     subprocess.run("ptie simulate jet -o jet.h5 --size 32 --frames 2", shell=True)
   > print(open("jet.h5.part").read())
   > END
@@ -54,10 +54,10 @@ So does a figure without a folder, or of a frame that will not be there
   [1]
   $ ptie simulate jet -o jet.h5 --size 32 --frames 5
   ! jet.h5: 5 frames of 32 x 32 px with the truth; rig in jet.ini
-  $ ptie reconstruct --rig jet.ini jet.h5 -o phase.h5 --figure frame.png --figure-frame 2 --step 3
+  $ ptie reconstruct --rig jet.ini jet.h5 -o phase.h5 --figure frame.png --figure-frame 2 --frames ::3
   ! ptie: --figure-frame: expected 0..1 of the frames processed, or -1, found 2
   [2]
-  $ ptie reconstruct --rig jet.ini jet.h5 -o phase.h5 --figure frame.png --figure-frame 1 --step 3 | head -1
+  $ ptie reconstruct --rig jet.ini jet.h5 -o phase.h5 --figure frame.png --figure-frame 1 --frames ::3 | head -1
   2 frames of 32 x 32 px, 20 um each, in * s (* frames/s) (glob)
   $ ls
   frame.png

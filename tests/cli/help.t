@@ -235,9 +235,9 @@ reconstruct
         --reference FILE      no-flow recording, instead of the rig's
         --dark FILE           recording without light, instead of the rig's
         --mask FILE           image of what is opaque (0), instead of the rig's
-        --first N             first frame (default: 0)
-    -n, --count N             frames; 0 = to the end (default: 0)
-        --step N              every N-th frame (default: 1)
+        --frames a:b:step     frames a, a + step, ... below b; each may be left
+                              out
+        --resume              go on where an interrupted run stopped
         --truth FILE          true phase to compare with
         --jet x,y,w,h         region of the flow, pixels of the phase
         --background x,y,w,h  region without flow; if no regions are given, they
@@ -328,9 +328,9 @@ run
         --reference FILE      no-flow recording, instead of the rig's
         --dark FILE           recording without light, instead of the rig's
         --mask FILE           image of what is opaque (0), instead of the rig's
-        --first N             first frame (default: 0)
-    -n, --count N             frames; 0 = to the end (default: 0)
-        --step N              every N-th frame (default: 1)
+        --frames a:b:step     frames a, a + step, ... below b; each may be left
+                              out
+        --resume              go on where an interrupted run stopped
         --truth FILE          true phase to compare with
         --jet x,y,w,h         region of the flow, pixels of the phase
         --background x,y,w,h  region without flow; if no regions are given, they

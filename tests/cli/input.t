@@ -151,7 +151,7 @@ Planes without a flow
   $ ptie reconstruct --rig rig.ini --plus same.npy --minus same.npy -o phase.h5
   2 frames of 32 x 32 px, 20 um each, in * s (* frames/s) (glob)
   
-  ! ptie: phase.h5: no flow to tell from the background, so no metrics of regions (name them with --jet and --background)
+  ! phase.h5: no regions: no flow to tell from the background, so no MGM, SBR, BNS and CNR
   $ ls
   phase.h5
   rig.ini
@@ -160,11 +160,11 @@ Planes without a flow
 Frames that are not there
   $ ptie simulate jet -o jet.h5 --size 32 --frames 3
   ! jet.h5: 3 frames of 32 x 32 px with the truth; rig in jet.ini
-  $ ptie reconstruct --rig jet.ini jet.h5 -o phase.h5 --first 3
+  $ ptie reconstruct --rig jet.ini jet.h5 -o phase.h5 --frames 3:
   ! ptie: jet.h5: first frame out of range (expected 0..2, found 3)
   [2]
-  $ ptie reconstruct --rig jet.ini jet.h5 -o phase.h5 --count 4
-  ! ptie: jet.h5: too few frames (expected 4 from frame 0 in steps of 1, found 3)
+  $ ptie reconstruct --rig jet.ini jet.h5 -o phase.h5 --frames :4
+  ! ptie: jet.h5: end of the frames out of range (expected 1..3, found 4)
   [2]
   $ ls
   jet.h5

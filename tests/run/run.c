@@ -181,7 +181,7 @@ static void the_border_is_zero_and_a_subset_is_the_same(void **state) {
     read_phase(all, s.output);
     /* The blob's tail at the border is exp(-16^2/40) = 2e-3 rad at most; the median far below. */
     assert_near((double)all[0][PIXELS - 1], 0, 2e-3);
-    s.params.first = 3, s.params.count = 2, s.params.step = 4;
+    s.params.frames = (ptie_frame_range){3, 8, 4};
     assert_ok(run_with(&s, 2, &summary));
     assert_int_equal(summary.frames, 2);
     float frame[PIXELS];
@@ -359,9 +359,9 @@ static void what_does_not_fit_is_refused_and_leaves_nothing(void **state) {
     assert_fails(run_with(&s, 1, &summary), PTIE_EINVAL, "no-flow reference is missing");
 
     init(&s);
-    s.params.first = 11;
+    s.params.frames.first = 11;
     assert_fails(run_with(&s, 1, &summary), PTIE_EINVAL, "expected 0..10, found 11");
-    s.params.first = 0;
+    s.params.frames.first = 0;
     s.params.plane[PTIE_PLUS] = support_temporary("none.npy");
     assert_fails(run_with(&s, 1, &summary), PTIE_EIO, "none.npy");
 
