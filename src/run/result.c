@@ -95,8 +95,9 @@ static ptie_status make_column(ptie_h5 *h5, int which, uint64_t frames) {
 
 static ptie_status make_structure(const ptie_result *r, ptie_h5 *h5, const ptie_run_params *params,
                                   const ptie_nexus_axes *axes, const char *settings) {
-    static const ptie_nexus_signal phase = {"phase", "Phase by the transport-of-intensity equation", "rad"};
-    static const ptie_nexus_signal denoised = {"denoised", "Denoised phase", "rad"};
+    static const ptie_nexus_signal phase = {"phase", "Phase by the transport-of-intensity equation", "rad",
+                                            PTIE_H5_F32, false};
+    static const ptie_nexus_signal denoised = {"denoised", "Denoised phase", "rad", PTIE_H5_F32, false};
     /* The best map comes first: it is what viewers show. */
     const ptie_nexus_signal signals[] = {r->denoised ? denoised : phase, phase};
     PTIE_TRY(ptie_nexus_begin(h5, axes, signals, r->denoised ? 2 : 1));
