@@ -27,7 +27,7 @@ static const char notes[] =
 typedef struct settings {
     compute_options compute;
     ptie_prepare_params params;
-    frame_range frames;
+    ptie_frame_range frames;
     const char *rig_path;
     int until;
     ptie_rig rig;
