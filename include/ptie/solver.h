@@ -50,7 +50,8 @@ typedef struct ptie_solver_params {
        (0..1); 0 (default) takes what lies below 1 % for outside of the light and gives it the mean. */
     double intensity_floor;
     /* Where there is light: height x width, 1 = light, 0 = opaque (a nozzle); NULL (default) = everywhere.
-       Opaque pixels are no part of the means, have neither light nor dI/dz, and phase 0.  The plan copies it. */
+       Opaque pixels have no light and phase 0.  What the planes hold there is read only next to light, where
+       diffraction puts some (M14), and by PTIE_SOLVE_DIRECT not at all.  The plan copies the mask. */
     const uint8_t *mask;
 } ptie_solver_params;
 
@@ -85,5 +86,28 @@ PTIE_API PTIE_NODISCARD ptie_status ptie_solver_run(const ptie_solver *solver, f
    standard deviation `sigma` in each plane: the closed form (M8), summed over this plan's filter.  For
    even light; darker regions are noisier by max I / I. */
 PTIE_API double ptie_solver_noise_rad(const ptie_solver *solver, double sigma);
+
+/* mask (out; height x width): 1 where the phase is made of measured light only, 0 where light from beyond the frame's
+   edge or from behind an opaque one can have been diffracted to: within lambda max|z| / (2 pixel) of it (M14).
+   What the boundary condition itself adds has no such border: it is smooth, and fades into the frame.
+   Errors: PTIE_EINVAL (a pointer is missing). */
+PTIE_API PTIE_NODISCARD ptie_status ptie_solver_border(const ptie_solver *solver, uint8_t *mask);
+
+/* How a cut-off is chosen (M15, M16). */
+typedef enum ptie_cutoff_rule {
+    PTIE_CUTOFF_NOISE = 0,  /* the smallest expected error of the phase, from the noise of the planes */
+    PTIE_CUTOFF_L_CURVE = 1 /* the corner between what is left of dI/dz and what the phase amounts to: against drifts
+                               and gradients of the light; white noise alone makes no corner */
+} ptie_cutoff_rule;
+
+/* cutoff_m (out): for ptie_solver_params, from the planes of one frame; 0 where none is better than any.  params:
+   those of the solver; its method and cutoff_m do not matter.  sigma (PTIE_CUTOFF_NOISE): relative standard deviation of
+   the white noise in each plane, or 0: found from the finest structures of dI/dz.  One frame decides by a handful of
+   coarse modes: for a recording take the median over several.  Does not depend on the scale of the planes.
+   Allocates.  Errors: those of ptie_solver_create and ptie_solver_run; PTIE_EINVAL (sigma < 0). */
+PTIE_API PTIE_NODISCARD ptie_status ptie_solver_choose_cutoff(double *cutoff_m, ptie_ctx *ctx,
+                                                              const ptie_solver_params *params,
+                                                              const float *const *planes,
+                                                              ptie_cutoff_rule rule, double sigma);
 
 #endif

@@ -42,6 +42,10 @@ void ptie_fft_filter_fill(const ptie_fft *fft, float *filter, double pixel_m,
                           double (*response)(double k2, const void *context), const void *context);
 /* Multiplies the spectrum, in place. */
 void ptie_fft_filter_apply(const ptie_fft *fft, float *spectrum, const float *filter);
+/* Modes of the image that an entry of this column stands for. */
+int32_t ptie_fft_multiplicity(const ptie_fft *fft, int32_t column);
+/* An entry's squared magnitude times its share, summed over all entries, is the image's sum of squares. */
+double ptie_fft_share(const ptie_fft *fft, int32_t column, int32_t row);
 /* Mean of filter^2 over all modes of the image: what it does to the variance of white noise. */
 double ptie_fft_filter_power(const ptie_fft *fft, const float *filter);
 

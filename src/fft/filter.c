@@ -33,7 +33,7 @@ PTIE_CLONES void ptie_fft_filter_apply(const ptie_fft *fft, float *spectrum, con
 
 /* A half spectrum leaves out the conjugate of every column but the first and, for an even width,
    the last. */
-static double multiplicity(const ptie_fft *fft, int32_t column) {
+int32_t ptie_fft_multiplicity(const ptie_fft *fft, int32_t column) {
     if (fft->kind != PTIE_FFT_REAL) return 1;
     return column == 0 || 2 * column == fft->width ? 1 : 2;
 }
@@ -43,6 +43,12 @@ double ptie_fft_filter_power(const ptie_fft *fft, const float *filter) {
     double sum = 0;
     for (int32_t y = 0; y < fft->height; y++)
         for (int32_t x = 0; x < columns; x++, filter++)
-            sum += multiplicity(fft, x) * (double)*filter * (double)*filter;
+            sum += ptie_fft_multiplicity(fft, x) * (double)*filter * (double)*filter;
     return sum / ((double)fft->width * fft->height);
+}
+
+double ptie_fft_share(const ptie_fft *fft, int32_t column, int32_t row) {
+    const double pixels = (double)fft->width * fft->height;
+    if (fft->kind != PTIE_FFT_MIRROR) return ptie_fft_multiplicity(fft, column) / pixels;
+    return 1 / (pixels * (column == 0 ? 4 : 2) * (row == 0 ? 4 : 2)); /* sum of (2 cos)^2: 4 n or 2 n */
 }

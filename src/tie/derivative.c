@@ -78,7 +78,6 @@ static void weigh_planes(float *derivative, const ptie_tie_weights *w, const flo
         else
             narrow(derivative + start, sum, count);
     }
-    ptie_tie_blank(derivative, w->mask, pixels);
 }
 
 void ptie_tie_blank(float *image, const uint8_t *mask, size_t pixels) {
@@ -113,16 +112,17 @@ static ptie_status check_light(double light, const char *what) {
 }
 
 ptie_status ptie_tie_derivative(float *derivative, const ptie_tie_weights *w, const float *const *planes) {
+    const size_t pixels = (size_t)w->width_px * (size_t)w->height_px;
     PTIE_TRY(check_finite(w, planes));
     if (w->pixelwise) {
         PTIE_TRY(check_divisor(w, planes[w->base]));
         weigh_planes(derivative, w, planes, 1, true);
-        return PTIE_OK;
+    } else {
+        const double mean = mean_in_light(planes, w->count, w->mask, pixels);
+        PTIE_TRY(check_light(mean, "mean"));
+        weigh_planes(derivative, w, planes, mean, false);
     }
-    const double mean =
-        mean_in_light(planes, w->count, w->mask, (size_t)w->width_px * (size_t)w->height_px);
-    PTIE_TRY(check_light(mean, "mean"));
-    weigh_planes(derivative, w, planes, mean, false);
+    ptie_tie_blank(derivative, w->mask, pixels);
     return PTIE_OK;
 }
 

@@ -19,12 +19,15 @@ typedef struct ptie_tie_weights {
 /* PTIE_EINVAL if two planes coincide. */
 ptie_status ptie_tie_weigh(ptie_tie_weights *weights, const ptie_solver_params *params);
 
+/* Variance of dI/dz per variance of a plane. */
+double ptie_tie_noise_gain(const ptie_tie_weights *weights);
+
 /* derivative (out): (dI/dz) / I in 1/m, 0 in opaque pixels.  Errors: those of ptie_solver_run. */
 ptie_status ptie_tie_derivative(float *derivative, const ptie_tie_weights *weights,
                                 const float *const *planes);
 
 /* Both relative to the brightest pixel: light (out), the plane in focus or the mean of all planes, negative
-   values as 0; slope (out): dI/dz in 1/m.  0 in opaque pixels. */
+   values as 0; slope (out): dI/dz in 1/m.  light is 0 in opaque pixels. */
 ptie_status ptie_tie_slope(float *slope, float *light, const ptie_tie_weights *weights,
                            const float *const *planes);
 

@@ -82,7 +82,7 @@ static double look_at_rest(const ptie_solver *solver, const work *w) {
     const size_t pixels = ptie_solver_pixels(solver);
     ptie_tie_diffract(solver, w->left, w->phase, w->light, &w->wave);
     for (size_t i = 0; i < pixels; i++) w->left[i] = w->measured[i] - w->left[i];
-    ptie_tie_blank(w->left, solver->mask, pixels);
+    ptie_tie_blank(w->left, solver->reached, pixels);
     return (double)largest(w->left, pixels);
 }
 
@@ -108,6 +108,7 @@ ptie_status ptie_tie_iterate(const ptie_solver *solver, float *phase_rad, const 
     const work w = carve(solver, &(ptie_slicer){.base = scratch});
     const size_t pixels = ptie_solver_pixels(solver);
     PTIE_TRY(ptie_tie_slope(w.measured, w.light, &solver->weights, planes));
+    ptie_tie_blank(w.measured, solver->reached, pixels);
     memcpy(w.left, w.measured, pixels * sizeof *w.left);
     memset(w.phase, 0, pixels * sizeof *w.phase);
     const ptie_solver_report result = iterate(solver, &w);

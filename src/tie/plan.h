@@ -16,7 +16,8 @@ typedef struct ptie_poisson {
 
 struct ptie_solver {
     ptie_solver_params params;
-    uint8_t *mask; /* own copy of params.mask, or NULL */
+    uint8_t *mask;    /* own copy of params.mask, or NULL */
+    uint8_t *reached; /* 1 where there is light or diffraction brings some; NULL without a mask */
     ptie_tie_weights weights;
     ptie_fft *fft;    /* of the boundary */
     float *inverse;   /* rad m: phase per (dI/dz) / I */
@@ -43,6 +44,11 @@ void ptie_tie_invert(const ptie_solver *solver, float *image, float *spectrum);
 
 /* Mean 0 where there is light, and 0 elsewhere. */
 void ptie_tie_level(const ptie_solver *solver, float *phase_rad);
+
+/* Pixels that diffraction carries light across an edge (M14). */
+int32_t ptie_tie_reach(const ptie_solver_params *params);
+/* Pixels next to a `value` (0 or 1) get it, up to `reach` away in x and in y. */
+void ptie_tie_spread(uint8_t *mask, int32_t width_px, int32_t height_px, uint8_t value, int32_t reach);
 
 ptie_status ptie_poisson_prepare(ptie_poisson *poisson, const ptie_solver_params *params);
 void ptie_poisson_clear(ptie_poisson *poisson);

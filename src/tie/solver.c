@@ -53,6 +53,9 @@ static ptie_status copy_mask(ptie_solver *solver) {
     PTIE_TRY(ptie_alloc_status(&solver->mask, pixels, 1, "solver"));
     memcpy(solver->mask, p->mask, pixels);
     p->mask = solver->mask;
+    PTIE_TRY(ptie_alloc_status(&solver->reached, pixels, 1, "solver"));
+    memcpy(solver->reached, p->mask, pixels);
+    ptie_tie_spread(solver->reached, p->width_px, p->height_px, 1, ptie_tie_reach(p));
     return PTIE_OK;
 }
 
@@ -105,6 +108,7 @@ void ptie_solver_free(ptie_solver *solver) {
     ptie_poisson_clear(&solver->poisson);
     for (int32_t i = 0; i < PTIE_MAX_PLANES; i++) ptie_propagator_clear(&solver->propagator[i]);
     ptie_free(solver->mask);
+    ptie_free(solver->reached);
     ptie_free(solver);
 }
 
@@ -173,8 +177,5 @@ ptie_status ptie_tie_solve(const ptie_solver *solver, float *phase_rad, const fl
 
 /* White noise of variance v per pixel of dI/dz leaves v times the filter's mean power (M8). */
 double ptie_tie_noise_rad(const ptie_solver *solver, double sigma) {
-    const ptie_tie_weights *w = &solver->weights;
-    double squares = 0;
-    for (int32_t i = 0; i < w->count; i++) squares += w->weight[i] * w->weight[i];
-    return sigma * sqrt(squares * ptie_fft_filter_power(solver->fft, solver->inverse));
+    return sigma * sqrt(ptie_tie_noise_gain(&solver->weights) * ptie_fft_filter_power(solver->fft, solver->inverse));
 }

@@ -12,6 +12,9 @@ int32_t ptie_tie_planes(const ptie_solver *solver); /* of a frame */
 size_t ptie_tie_scratch(const ptie_solver *solver);
 ptie_status ptie_tie_solve(const ptie_solver *solver, float *phase_rad, const float *const *planes,
                            void *scratch, ptie_solver_report *report);
+void ptie_tie_border(const ptie_solver *solver, uint8_t *mask);
+ptie_status ptie_tie_choose_cutoff(double *cutoff_m, const ptie_solver_params *params,
+                                   const float *const *planes, ptie_cutoff_rule rule, double sigma);
 double ptie_tie_noise_rad(const ptie_solver *solver, double sigma);
 
 #endif

@@ -56,6 +56,12 @@ static void weigh_least_squares(double *weight, const double *z, int32_t count, 
     }
 }
 
+double ptie_tie_noise_gain(const ptie_tie_weights *weights) {
+    double squares = 0;
+    for (int32_t i = 0; i < weights->count; i++) squares += weights->weight[i] * weights->weight[i];
+    return squares;
+}
+
 ptie_status ptie_tie_weigh(ptie_tie_weights *weights, const ptie_solver_params *params) {
     const int32_t count = params->plane_count;
     const double *z = params->z_m;

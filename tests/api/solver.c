@@ -138,6 +138,40 @@ static void noise_is_proportional_and_ordered(void **state) {
     assert_true(isnan(ptie_solver_noise_rad(NULL, 0.01)));
 }
 
+static void border_and_cutoff_check_their_arguments(void **state) {
+    ptie_solver *solver = small_solver(*state);
+    ptie_solver_params p;
+    ptie_solver_params_init(&p);
+    p.width_px = W, p.height_px = H;
+    uint8_t mask[PIXELS];
+    assert_ok(ptie_solver_border(solver, mask));
+    assert_true(mask[0] == 0 && mask[10 * W + 16] == 1);
+    assert_fails(ptie_solver_border(NULL, mask), PTIE_EINVAL, "solver is missing");
+    assert_fails(ptie_solver_border(solver, NULL), PTIE_EINVAL, "mask is missing");
+    float plus[PIXELS], minus[PIXELS];
+    for (int i = 0; i < PIXELS; i++) plus[i] = 1 + 0.01f * (float)sin(i * i), minus[i] = 2 - plus[i];
+    const float *const planes[] = {plus, minus}, *const missing[] = {NULL, minus};
+    double cutoff = -1;
+    assert_ok(ptie_solver_choose_cutoff(&cutoff, *state, &p, planes, PTIE_CUTOFF_NOISE, 0.01));
+    assert_true(cutoff >= 0);
+    assert_fails(ptie_solver_choose_cutoff(NULL, *state, &p, planes, PTIE_CUTOFF_NOISE, 0), PTIE_EINVAL,
+                 "cutoff_m is missing");
+    assert_fails(ptie_solver_choose_cutoff(&cutoff, NULL, &p, planes, PTIE_CUTOFF_NOISE, 0), PTIE_EINVAL,
+                 "ctx is missing");
+    assert_fails(ptie_solver_choose_cutoff(&cutoff, *state, NULL, planes, PTIE_CUTOFF_NOISE, 0), PTIE_EINVAL,
+                 "params is missing");
+    assert_fails(ptie_solver_choose_cutoff(&cutoff, *state, &p, missing, PTIE_CUTOFF_NOISE, 0), PTIE_EINVAL,
+                 "planes[0] is missing");
+    assert_fails(ptie_solver_choose_cutoff(&cutoff, *state, &p, planes, (ptie_cutoff_rule)2, 0), PTIE_EINVAL,
+                 "rule is out of range");
+    assert_fails(ptie_solver_choose_cutoff(&cutoff, *state, &p, planes, PTIE_CUTOFF_NOISE, -1), PTIE_EINVAL,
+                 "sigma is out of range");
+    plus[5] = NAN;
+    assert_fails(ptie_solver_choose_cutoff(&cutoff, *state, &p, planes, PTIE_CUTOFF_NOISE, 0), PTIE_ENUMERIC,
+                 "value is not finite");
+    ptie_solver_free(solver);
+}
+
 static void nothing_is_a_fine_thing_to_free(void **state) {
     (void)state;
     ptie_solver_free(NULL);
@@ -185,6 +219,7 @@ int main(void) {
         cmocka_unit_test(create_checks_every_parameter),
         cmocka_unit_test(run_checks_every_pointer),
         cmocka_unit_test(noise_is_proportional_and_ordered),
+        cmocka_unit_test(border_and_cutoff_check_their_arguments),
         cmocka_unit_test(nothing_is_a_fine_thing_to_free),
         cmocka_unit_test(threads_share_a_plan),
     };

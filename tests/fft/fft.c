@@ -216,6 +216,7 @@ static double spectrum_energy(const setup *s, ptie_fft_kind kind, int32_t w, int
             double weight = 1;
             if (kind == PTIE_FFT_REAL) weight = x == 0 || 2 * x == w ? 1 : 2;
             if (kind == PTIE_FFT_MIRROR) weight = (x > 0 ? 2 : 1) * (y > 0 ? 2 : 1) / 16.0;
+            assert_near(ptie_fft_share(s->fft, x, y) * w * h / weight, 1, 1e-15);
             sum += weight * energy(s->spectrum + (size_t)(y * columns + x) * entry, entry);
         }
     return sum / ((double)w * h);
