@@ -108,7 +108,99 @@ PTIE_API size_t ptie_resampler_scratch_bytes(const ptie_resampler *resampler);
 PTIE_API PTIE_NODISCARD ptie_status ptie_resampler_run(const ptie_resampler *resampler, float *out,
                                                        const float *plane, void *scratch);
 
-/* mask (out): 1 where the grid is found within the plane's frame, 0 where it was mirrored. */
-PTIE_API void ptie_resampler_inside(const ptie_resampler *resampler, uint8_t *mask);
+/* mask (out): 1 where the grid is found within the plane's frame, `margin_px` or more from its outermost pixels;
+   0 where the plane was mirrored. */
+PTIE_API void ptie_resampler_inside(const ptie_resampler *resampler, uint8_t *mask, double margin_px);
+
+typedef struct ptie_registration {
+    ptie_similarity place;     /* where the moving plane lies on the grid of the fixed one */
+    ptie_similarity deviation; /* standard deviation of each number, from what the planes do not have in common */
+    double correlation;        /* of the registered textures, -1..1; negative where one is dark and the other bright */
+} ptie_registration;
+
+/* Finds where a plane lies from what both planes show of the same, unmoving light: best the mean of no-flow frames,
+   or a target in the field (P7).  They may differ in gain, level and, as far as structure survives, in defocus.
+   Looks for rotations up to 9 degrees, magnifications 0.9..1.1, shifts up to a quarter of the frame.  On a texture of
+   4 % with 1 % of noise in each plane, 256 x 256 px, the shift is good to 0.008 px.  mask: 1 = light of the fixed plane, NULL: all.
+   Sizes 64..32768 px.  Allocates.  Errors: PTIE_ENUMERIC (not finite, no texture, nothing in common), PTIE_EINVAL,
+   PTIE_ENOMEM. */
+PTIE_API PTIE_NODISCARD ptie_status ptie_register(ptie_registration *out, const float *fixed, const float *moving,
+                                                  const uint8_t *mask, int32_t width_px, int32_t height_px);
+
+/* ---- Opaque regions ---- */
+
+/* mask (out): 0 where the reference is below `below` (0..1) of its median, cleaned of specks and pinholes of up to
+   2 clean_px, and grown by margin_px in x and in y; else 1 (P8).  Both lengths 0..1024 px.  Allocates.
+   Errors: PTIE_EINVAL, PTIE_ENUMERIC (not finite), PTIE_ENOMEM. */
+PTIE_API PTIE_NODISCARD ptie_status ptie_opaque_mask(uint8_t *mask, const float *reference, int32_t width_px,
+                                                     int32_t height_px, double below, int32_t clean_px,
+                                                     int32_t margin_px);
+
+/* Replaces pixels of mask 0 by a smooth continuation of those around them (P9); 0 if all are masked. */
+PTIE_API size_t ptie_fill_scratch_bytes(int32_t width_px, int32_t height_px);
+PTIE_API void ptie_fill_masked(float *image, const uint8_t *mask, int32_t width_px, int32_t height_px, void *scratch);
+
+/* ---- Backgrounds ---- */
+
+enum { PTIE_SURFACE_DEGREE = 4 }; /* the highest */
+
+typedef struct ptie_surface_params {
+    uint32_t struct_size;        /* set by ptie_surface_params_init */
+    int32_t width_px, height_px; /* 4..32768 each */
+    int32_t degree;              /* 1: a plane (default); n = 2..4: Zernike polynomials up to radial order n */
+    int32_t rounds;              /* of outlier rejection, 0 (default)..50; 10 if the flow is not masked (on less
+                                    than half the frame) */
+    double reject;               /* standard deviations beyond which a pixel is rejected, 1..100, default 3 */
+} ptie_surface_params;
+
+typedef struct ptie_surface ptie_surface;
+
+PTIE_API void ptie_surface_params_init(ptie_surface_params *params);
+
+/* mask (copied): 1 where there is no flow, NULL: everywhere.  Allocates.  Errors: PTIE_EINVAL (range; the mask
+   leaves too little to fit), PTIE_ENOMEM. */
+PTIE_API PTIE_NODISCARD ptie_status ptie_surface_create(ptie_surface **out, const ptie_surface_params *params,
+                                                        const uint8_t *mask);
+PTIE_API void ptie_surface_free(ptie_surface *surface); /* NULL is fine */
+PTIE_API size_t ptie_surface_scratch_bytes(const ptie_surface *surface);
+
+/* map -= the least-squares surface through its pixels without flow (P10).
+   Errors: PTIE_EINVAL (scratch), PTIE_ENUMERIC (not finite; rejection left too little: the map stays). */
+PTIE_API PTIE_NODISCARD ptie_status ptie_surface_remove(const ptie_surface *surface, float *map, void *scratch);
+
+/* median (out): per pixel, of `frames` >= 1 maps that lie `stride` floats apart in the stack (P11).  A band of rows
+   at a time keeps the memory small: its pixels do not depend on the others.  Values must be finite. */
+PTIE_API void ptie_temporal_median(float *median, const float *stack, int32_t frames, size_t stride, size_t pixels);
+
+/* Subtracts the mean over `region` from the map: no flow there, so 0 (P12).
+   Errors: PTIE_EINVAL (region leaves the map or is empty). */
+PTIE_API PTIE_NODISCARD ptie_status ptie_pin_region(float *map, int32_t width_px, int32_t height_px,
+                                                    ptie_rect region);
+
+/* ---- Is the recording fit for it? ---- */
+
+/* chi = pi lambda |z| / period^2 (P13): linear TIE underestimates a period by sin chi / chi, 5 % at chi = 0.55.
+   At the Nyquist frequency the period is two pixels. */
+PTIE_API double ptie_chi(double wavelength_m, double defocus_m, double period_m);
+
+/* Mosaic self-check (P14): mean |TL + BR - TR - BL| over the cells, relative to the mean of the sum of all four.
+   Crossed polarisers share the light, so both sums are all of it: 0.014 for a real sensor.  NaN without light. */
+PTIE_API double ptie_mosaic_imbalance(const float *image, int32_t width_px, int32_t height_px);
+
+/* (largest - smallest) / mean of the means of `count` planes over the mask (NULL: all). */
+PTIE_API double ptie_plane_spread(const float *const *plane, int32_t count, const uint8_t *mask, size_t pixels);
+
+/* Pixels at `level` or above. */
+PTIE_API size_t ptie_count_saturated(const float *image, size_t pixels, double level);
+
+typedef struct ptie_trend {
+    double slope;     /* per step */
+    double deviation; /* standard deviation of the slope, if the residuals are independent; NaN below 3 values */
+    double rms;       /* of the residuals */
+} ptie_trend;
+
+/* Straight line through a series, such as the level of a still region per frame: a background drifts if the slope is
+   several deviations.  NaN below 2 values. */
+PTIE_API ptie_trend ptie_trend_of(const double *values, size_t count);
 
 #endif

@@ -2,11 +2,11 @@
 /* <ptie/preprocess.h>: arguments checked, then inward. */
 #include <ptie/preprocess.h>
 
-#include <math.h>
-
 #include "api/params.h"
+#include "base/image.h"
 #include "prep/prep.h"
 #include "prep/resample.h"
+#include "prep/surface.h"
 
 static ptie_status check_image(const void *image, const char *name, int32_t width, int32_t height,
                                const char *where) {
@@ -83,5 +83,65 @@ ptie_status ptie_resampler_run(const ptie_resampler *resampler, float *out, cons
     PTIE_TRY(ptie_check_pointer(plane, where, "plane"));
     PTIE_TRY(ptie_check_scratch(scratch, where));
     ptie_prep_resample(resampler, out, plane, scratch);
+    return PTIE_OK;
+}
+
+ptie_status ptie_register(ptie_registration *out, const float *fixed, const float *moving, const uint8_t *mask,
+                          int32_t width_px, int32_t height_px) {
+    static const char where[] = "ptie_register";
+    PTIE_TRY(ptie_check_pointer(out, where, "out"));
+    PTIE_TRY(ptie_check_pointer(fixed, where, "fixed"));
+    PTIE_TRY(ptie_check_pointer(moving, where, "moving"));
+    PTIE_TRY(ptie_check_integer(width_px, 64, 32768, where, "width_px"));
+    PTIE_TRY(ptie_check_integer(height_px, 64, 32768, where, "height_px"));
+    return ptie_prep_register(out, fixed, moving, mask, width_px, height_px);
+}
+
+ptie_status ptie_opaque_mask(uint8_t *mask, const float *reference, int32_t width_px, int32_t height_px,
+                             double below, int32_t clean_px, int32_t margin_px) {
+    static const char where[] = "ptie_opaque_mask";
+    PTIE_TRY(ptie_check_pointer(mask, where, "mask"));
+    PTIE_TRY(check_image(reference, "reference", width_px, height_px, where));
+    PTIE_TRY(ptie_check_number(below, 0, 1, where, "below"));
+    PTIE_TRY(ptie_check_integer(clean_px, 0, 1024, where, "clean_px"));
+    PTIE_TRY(ptie_check_integer(margin_px, 0, 1024, where, "margin_px"));
+    return ptie_prep_opaque_mask(mask, reference, width_px, height_px, below, clean_px, margin_px);
+}
+
+static ptie_status check_surface(const ptie_surface_params *p, const char *where) {
+    PTIE_TRY(ptie_check_integer(p->width_px, 4, 32768, where, "width_px"));
+    PTIE_TRY(ptie_check_integer(p->height_px, 4, 32768, where, "height_px"));
+    PTIE_TRY(ptie_check_integer(p->degree, 1, PTIE_SURFACE_DEGREE, where, "degree"));
+    PTIE_TRY(ptie_check_integer(p->rounds, 0, 50, where, "rounds"));
+    return ptie_check_number(p->reject, 1, 100, where, "reject");
+}
+
+ptie_status ptie_surface_create(ptie_surface **out, const ptie_surface_params *params, const uint8_t *mask) {
+    static const char where[] = "ptie_surface_create";
+    PTIE_TRY(ptie_check_pointer(out, where, "out"));
+    *out = NULL;
+    ptie_surface_params known;
+    ptie_surface_params_init(&known);
+    PTIE_TRY(ptie_params_read(&known, sizeof known, params, where));
+    PTIE_TRY(check_surface(&known, where));
+    return ptie_prep_surface(out, &known, mask);
+}
+
+size_t ptie_surface_scratch_bytes(const ptie_surface *surface) {
+    return surface ? ptie_prep_surface_scratch(surface) : 0;
+}
+
+ptie_status ptie_surface_remove(const ptie_surface *surface, float *map, void *scratch) {
+    static const char where[] = "ptie_surface_remove";
+    PTIE_TRY(ptie_check_pointer(surface, where, "surface"));
+    PTIE_TRY(ptie_check_pointer(map, where, "map"));
+    PTIE_TRY(ptie_check_scratch(scratch, where));
+    return ptie_prep_surface_remove(surface, map, scratch);
+}
+
+ptie_status ptie_pin_region(float *map, int32_t width_px, int32_t height_px, ptie_rect region) {
+    PTIE_TRY(check_image(map, "map", width_px, height_px, "ptie_pin_region"));
+    PTIE_TRY(ptie_rect_check(region, width_px, height_px, "without flow"));
+    ptie_prep_pin(map, width_px, height_px, region);
     return PTIE_OK;
 }

@@ -70,3 +70,15 @@ double ptie_image_border_median(const float *image, int32_t width, int32_t heigh
     qsort(border, count, sizeof *border, ascending);
     return ((double)border[count / 2 - 1] + (double)border[count / 2]) / 2;
 }
+
+/* Written so that no sum of the caller's numbers overflows. */
+ptie_status ptie_rect_check(ptie_rect r, int32_t width, int32_t height, const char *name) {
+    const bool inside = r.x_px >= 0 && r.y_px >= 0 && r.width_px > 0 && r.height_px > 0 &&
+                        r.width_px <= width && r.x_px <= width - r.width_px &&
+                        r.height_px <= height && r.y_px <= height - r.height_px;
+    if (inside) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EINVAL,
+                     "region '%s' leaves the image or is empty (expected within %d x %d px, found "
+                     "%d x %d at x=%d, y=%d)",
+                     name, width, height, r.width_px, r.height_px, r.x_px, r.y_px);
+}

@@ -3,6 +3,8 @@
 #ifndef PTIE_BASE_IMAGE_H
 #define PTIE_BASE_IMAGE_H
 
+#include <ptie/metrics.h>
+
 #include "base/status.h"
 
 /* PTIE_ENUMERIC naming `what` ("i_plus") and the first pixel that is NaN or infinite. */
@@ -17,5 +19,8 @@ typedef struct ptie_extent {
     float low, high;
 } ptie_extent;
 ptie_extent ptie_image_extent(const float *values, size_t count);
+
+/* PTIE_EINVAL naming the region if `rect` is empty or leaves an image of this size. */
+ptie_status ptie_rect_check(ptie_rect rect, int32_t width, int32_t height, const char *name);
 
 #endif

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "base/image.h"
+#include "base/mask.h"
 #include "base/memory.h"
 #include "metrics/metrics.h"
-#include "metrics/morphology.h"
 
 enum { BINS = 256 }; /* of the histogram under the Otsu threshold */
 
@@ -20,22 +20,10 @@ static void fill_rect(uint8_t *labels, int32_t width, ptie_rect rect, uint8_t la
         memset(labels + (ptrdiff_t)y * width + rect.x_px, label, (size_t)rect.width_px);
 }
 
-/* Written so that no sum of the caller's numbers overflows. */
-static ptie_status check_rect(ptie_rect r, int32_t width, int32_t height, const char *name) {
-    const bool inside = r.x_px >= 0 && r.y_px >= 0 && r.width_px > 0 && r.height_px > 0 &&
-                        r.width_px <= width && r.x_px <= width - r.width_px &&
-                        r.height_px <= height && r.y_px <= height - r.height_px;
-    if (inside) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EINVAL,
-                     "region '%s' leaves the image or is empty (expected within %d x %d px, found "
-                     "%d x %d at x=%d, y=%d)",
-                     name, width, height, r.width_px, r.height_px, r.x_px, r.y_px);
-}
-
 ptie_status ptie_metrics_label_rects(uint8_t *labels, int32_t width, int32_t height, ptie_rect jet,
                                      ptie_rect background) {
-    PTIE_TRY(check_rect(jet, width, height, "jet"));
-    PTIE_TRY(check_rect(background, width, height, "background"));
+    PTIE_TRY(ptie_rect_check(jet, width, height, "jet"));
+    PTIE_TRY(ptie_rect_check(background, width, height, "background"));
     memset(labels, PTIE_NOWHERE, (size_t)width * (size_t)height);
     fill_rect(labels, width, background, PTIE_BACKGROUND);
     fill_rect(labels, width, jet, PTIE_JET);

@@ -15,4 +15,12 @@ ptie_status ptie_prep_splitter(ptie_splitter **out, const ptie_splitter_params *
 size_t ptie_prep_splitter_scratch(const ptie_splitter *splitter);
 void ptie_prep_split(const ptie_splitter *splitter, float *const *channel, const float *image, void *scratch);
 
+ptie_status ptie_prep_register(ptie_registration *out, const float *fixed, const float *moving, const uint8_t *mask,
+                               int32_t width, int32_t height);
+
+ptie_status ptie_prep_opaque_mask(uint8_t *mask, const float *reference, int32_t width, int32_t height, double below,
+                                  int32_t clean, int32_t margin);
+
+void ptie_prep_pin(float *map, int32_t width, int32_t height, ptie_rect region);
+
 #endif

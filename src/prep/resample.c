@@ -141,10 +141,11 @@ void ptie_prep_resample(const ptie_resampler *r, float *out, const float *plane,
         }
 }
 
-void ptie_resampler_inside(const ptie_resampler *r, uint8_t *mask) {
+void ptie_resampler_inside(const ptie_resampler *r, uint8_t *mask, double margin_px) {
+    const double left = margin_px, right = r->width - 1 - margin_px, bottom = r->height - 1 - margin_px;
     for (int32_t y = 0; y < r->height; y++)
         for (int32_t x = 0; x < r->width; x++) {
             const point p = source_of(r, x, y);
-            *mask++ = p.x >= 0 && p.x <= r->width - 1 && p.y >= 0 && p.y <= r->height - 1;
+            *mask++ = p.x >= left && p.x <= right && p.y >= left && p.y <= bottom;
         }
 }

@@ -45,7 +45,7 @@ static ptie_status plan_registration(ptie_prepare *p) {
         PTIE_TRY(ptie_prep_resampler(&p->resampler[i], p->width, p->height, where));
         uint8_t *inside;
         PTIE_TRY(ptie_alloc_status(&inside, p->pixels, 1, "run: registration"));
-        ptie_resampler_inside(p->resampler[i], inside);
+        ptie_resampler_inside(p->resampler[i], inside, 0);
         if (!p->seen) {
             p->seen = inside;
             continue;

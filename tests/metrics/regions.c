@@ -8,7 +8,7 @@
 #include <ptie/metrics.h>
 
 #include "base/random.h"
-#include "metrics/morphology.h"
+#include "base/mask.h"
 
 enum { N = 200, PIXELS = N * N };
 

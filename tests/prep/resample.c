@@ -15,7 +15,7 @@ static void resample(float *out, uint8_t *inside, const float *image, int32_t wi
     assert_ok(ptie_resampler_create(&resampler, width, height, where));
     void *scratch = ptie_scratch_alloc(ptie_resampler_scratch_bytes(resampler));
     assert_ok(ptie_resampler_run(resampler, out, image, scratch));
-    if (inside) ptie_resampler_inside(resampler, inside);
+    if (inside) ptie_resampler_inside(resampler, inside, 0);
     ptie_scratch_free(scratch);
     ptie_resampler_free(resampler);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "metrics/morphology.h"
+#include "base/mask.h"
 
 #include <string.h>
 

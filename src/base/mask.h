@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Binary images: 1 inside, 0 outside; squares as structuring elements. */
-#ifndef PTIE_METRICS_MORPHOLOGY_H
-#define PTIE_METRICS_MORPHOLOGY_H
+#ifndef PTIE_BASE_MASK_H
+#define PTIE_BASE_MASK_H
 
 #include <stddef.h>
 #include <stdint.h>
