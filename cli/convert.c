@@ -4,22 +4,30 @@
 
 #include "cli.h"
 
+static const char *const colours[] = {"grey", "viridis", "diverging", NULL}; /* ptie_colormap */
+
 static const char examples[] =
-    "  # what the camera wrote, for Python and MATLAB; a third of the size\n"
-    "  ptie convert shot.h5 small.h5 --compress\n\n"
+    "  # what the camera wrote, for Python and MATLAB\n"
+    "  ptie convert shot.cihx shot.h5 --compress\n\n"
     "  # phase as a stack for Fiji, with scale and frame interval\n"
     "  ptie convert phase.h5 phase.tif\n\n"
     "  # every second of the first 100 frames, a rectangle of them\n"
     "  ptie convert phase.h5 part.npy --frames 0:100:2 --roi 64,0,128,256\n\n"
     "  # images with one grey scale for all\n"
-    "  ptie convert phase.h5 flow_%04d.png --range -1:3\n";
+    "  ptie convert phase.h5 flow_%04d.png --range -1:3\n\n"
+    "  # a film for slides, blue below 0 and red above\n"
+    "  ptie convert phase.h5 flow.mp4 --colours diverging --fps 10\n\n"
+    "  # for MATLAB and Octave\n"
+    "  ptie convert phase.h5 phase.mat --frames 0:50\n";
 
 static const char notes[] =
     "INPUT is anything 'ptie info' knows as a recording: HDF5 (FILE.h5 or\n"
     "FILE.h5:/path/inside), TIFF, NPY, PNG, a folder of numbered images, or a\n"
     "pattern with one %d. The ending of OUTPUT decides what is written: .h5 .tif\n"
-    ".npy .png (a pattern with one %d for several frames). Integers of up to 16\n"
-    "bits stay integers, everything else becomes float32.\n";
+    ".npy .mat .mraw .png (a pattern with one %d for several frames) .y4m, and .mp4\n"
+    "where the program ffmpeg is installed. Integers of up to 16 bits stay integers,\n"
+    "everything else becomes float32. Unit, pixel, frame rate and frame numbers go\n"
+    "along where the kind of file has a place for them.\n";
 
 typedef struct settings {
     compute_options compute;
@@ -27,6 +35,8 @@ typedef struct settings {
     ptie_frame_range frames;
     ptie_rect roi;
     value_range range;
+    int colours;
+    double played_hz;
     bool compress;
 } settings;
 
@@ -35,7 +45,11 @@ static int parse(settings *s, int argc, char **argv) {
         {0, "frames", OPTION_FRAMES, &s->frames, "A:B:STEP", .help = "frames to take, B not included"},
         {0, "roi", OPTION_RECT, &s->roi, "x,y,w,h", .help = "rectangle to take, pixels"},
         {0, "range", OPTION_RANGE, &s->range, "LOW:HIGH",
-         .help = "PNG: values of black and white, instead of each frame's own"},
+         .help = "values of black and white in images and video; if not given, the extent of each image, of the "
+                 "whole video"},
+        {0, "colours", OPTION_CHOICE, &s->colours, "MAP", .choices = colours, .help = "of video"},
+        {0, "fps", OPTION_QUANTITY, &s->played_hz, "RATE", .quantity = PTIE_RATE,
+         .help = "of video: frames per second when shown"},
         {0, "compress", OPTION_FLAG, &s->compress, .help = "HDF5: shuffled and deflated"},
         COMPUTE_OPTIONS(s->compute),
     };
@@ -72,6 +86,8 @@ static ptie_status convert(const settings *s, const char *provenance) {
     params.roi = s->roi;
     params.low = s->range.low;
     params.high = s->range.high;
+    params.colours = (ptie_colormap)s->colours;
+    params.played_hz = s->played_hz;
     params.compress = s->compress;
     params.overwrite = s->compute.force;
     params.provenance = provenance;
@@ -83,7 +99,7 @@ static ptie_status convert(const settings *s, const char *provenance) {
 }
 
 int convert_command(int argc, char **argv) {
-    settings s = {.compute = COMPUTE_DEFAULTS, .frames = {.step = 1}};
+    settings s = {.compute = COMPUTE_DEFAULTS, .frames = {.step = 1}, .played_hz = 25};
     int code = parse(&s, argc, argv);
     if (code != GO_ON) return code;
     char *provenance = joined_command(argc, argv);

@@ -4,10 +4,13 @@
 
 #include "api/context.h"
 #include "api/params.h"
+#include "report/colormap.h"
 #include "run/convert.h"
 
+enum { LEVELS = 256 };
+
 void ptie_convert_params_init(ptie_convert_params *params) {
-    *params = (ptie_convert_params){.struct_size = sizeof *params, .step = 1};
+    *params = (ptie_convert_params){.struct_size = sizeof *params, .step = 1, .played_hz = 25};
 }
 
 ptie_status ptie_convert(ptie_ctx *ctx, const ptie_convert_params *params, ptie_progress progress) {
@@ -24,5 +27,10 @@ ptie_status ptie_convert(ptie_ctx *ctx, const ptie_convert_params *params, ptie_
     PTIE_TRY(ptie_check_integer(own.step, 1, INT32_MAX, where, "step"));
     PTIE_TRY(ptie_check_number(own.low, -1e30, 1e30, where, "low"));
     PTIE_TRY(ptie_check_number(own.high, own.low, 1e30, where, "high"));
-    return ptie_convert_recording(ctx->engine.pool, &own, progress);
+    PTIE_TRY(ptie_check_integer((int64_t)own.colours, PTIE_GRAY, PTIE_DIVERGING, where, "colours"));
+    PTIE_TRY(ptie_check_number(own.played_hz, 1e-3, 1e3, where, "played_hz"));
+    uint32_t colours[LEVELS];
+    for (int i = 0; i < LEVELS; i++) colours[i] = ptie_colour(own.colours, i / (LEVELS - 1.0));
+    return ptie_convert_recording(ctx->engine.pool, &own, own.colours == PTIE_GRAY ? NULL : colours,
+                                  progress);
 }

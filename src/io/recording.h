@@ -15,6 +15,8 @@ ptie_status ptie_io_read(ptie_recording *recording, int64_t frame, float *data);
 /* Is `path` a file that holds several data sets, none of which it names ("jet.h5")? */
 bool ptie_io_has_data_sets(const char *path);
 
+/* Is `path` of a kind, such as video, that wants the range of all values before the first frame? */
+bool ptie_io_needs_range(const char *path);
 /* ptie_writer_create with all a writer can be told.  path and name are copied, other strings are not. */
 ptie_status ptie_io_create(ptie_writer **out, const ptie_writer_job *job);
 ptie_status ptie_io_append(ptie_writer *writer, const float *frame);

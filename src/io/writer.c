@@ -19,14 +19,19 @@ struct ptie_writer {
 };
 
 static const ptie_writer_format *find_format(const char *path) {
-    static const ptie_writer_format *const formats[] = {&ptie_write_npy, &ptie_write_png,
-                                                        &ptie_write_tiff, &ptie_write_h5,
-                                                        &ptie_write_mraw};
+    static const ptie_writer_format *const formats[] = {
+        &ptie_write_h5,  &ptie_write_mat, &ptie_write_mp4,  &ptie_write_mraw,
+        &ptie_write_npy, &ptie_write_png, &ptie_write_tiff, &ptie_write_y4m};
     const char *dot = strrchr(path, '.');
     for (size_t i = 0; dot && i < sizeof formats / sizeof *formats; i++)
         for (const char *const *ending = formats[i]->endings; *ending; ending++)
             if (strcasecmp(dot, *ending) == 0) return formats[i];
     return NULL;
+}
+
+bool ptie_io_needs_range(const char *path) {
+    const ptie_writer_format *format = find_format(path);
+    return format && format->needs_range;
 }
 
 static void writer_free(ptie_writer *writer) {
@@ -64,7 +69,7 @@ ptie_status ptie_io_create(ptie_writer **out, const ptie_writer_job *job) {
     if (!format)
         return PTIE_FAIL(
             PTIE_EUNSUPPORTED,
-            "%s: cannot write this kind of file (expected .npy .tif .tiff .h5 .hdf5 .png or .mraw)",
+            "%s: cannot write this kind of file (expected .npy .tif .tiff .h5 .hdf5 .png .mat .y4m .mp4 or .mraw)",
             path);
     PTIE_TRY(ptie_alloc_status(&writer, 1, sizeof *writer, path));
     writer->format = format;

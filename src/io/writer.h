@@ -16,7 +16,9 @@ typedef struct ptie_writer_job {
     const char *source, *command; /* the recording it was made from, and how; NULL: not told */
     bool compress;    /* HDF5: shuffled and deflated */
     ptie_pool *pool;  /* compresses on its threads; NULL: on the caller's */
-    double low, high; /* images: values of black and white; equal: each frame's own extent */
+    double low, high; /* images, video: values of black and white; equal: see the format */
+    const uint32_t *colours; /* video: 256 of 0xRRGGBB; NULL: grey */
+    double played_hz;        /* video: frames per second when shown; 0 means 25 */
     ptie_sample stored; /* f32, u8 or u16, from info.sample; set by ptie_io_create */
 } ptie_writer_job;
 
@@ -33,8 +35,10 @@ typedef struct ptie_writer_format {
     /* After `frames` successful appends: completes the file or leaves none; frees in any case. */
     ptie_status (*complete)(void *state, int64_t frames);
     void (*discard)(void *state); /* leaves no file; frees */
+    bool needs_range;             /* all frames share low and high */
 } ptie_writer_format;
 
-extern const ptie_writer_format ptie_write_mraw, ptie_write_npy, ptie_write_png, ptie_write_tiff, ptie_write_h5;
+extern const ptie_writer_format ptie_write_h5, ptie_write_mat, ptie_write_mp4, ptie_write_mraw,
+    ptie_write_npy, ptie_write_png, ptie_write_tiff, ptie_write_y4m;
 
 #endif

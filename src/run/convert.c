@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "run/convert.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/file.h"
+#include "base/image.h"
 #include "base/memory.h"
 #include "io/recording.h"
 
@@ -11,10 +13,12 @@
 
 typedef struct conversion {
     const ptie_convert_params *params;
+    const uint32_t *colours;
     ptie_recording *input;
     ptie_writer *output;
     ptie_rect roi;
-    int64_t frames;
+    int64_t frames, passes, done; /* frames read in all passes */
+    double low, high;
     float *frame; /* (H, W) as read; the rectangle is moved to its front */
 } conversion;
 
@@ -78,17 +82,24 @@ static void name_map(char name[NAME_BYTES], const ptie_recording_info *info) {
     name[length] = 0;
 }
 
-static ptie_status prepare(conversion *c, ptie_pool *pool) {
+static ptie_status open_input(conversion *c) {
     const ptie_convert_params *p = c->params;
-    char name[NAME_BYTES];
     PTIE_TRY(ptie_output_differs(p->output, p->input));
     PTIE_TRY(ptie_io_open(&c->input, p->input));
     PTIE_TRY(choose_frames(c));
     PTIE_TRY(choose_pixels(c));
     const ptie_recording_info *info = ptie_io_info(c->input);
-    name_map(name, info);
-    PTIE_TRY(ptie_alloc_status(&c->frame, (size_t)info->width_px * (size_t)info->height_px,
-                               sizeof *c->frame, p->input));
+    c->low = p->low;
+    c->high = p->high;
+    c->passes = p->low == p->high && ptie_io_needs_range(p->output) ? 2 : 1;
+    return ptie_alloc_status(&c->frame, (size_t)info->width_px * (size_t)info->height_px,
+                             sizeof *c->frame, p->input);
+}
+
+static ptie_status create_output(conversion *c, ptie_pool *pool) {
+    const ptie_convert_params *p = c->params;
+    char name[NAME_BYTES];
+    name_map(name, ptie_io_info(c->input));
     return ptie_io_create(&c->output, &(ptie_writer_job){.path = p->output,
                                                          .name = p->name ? p->name : name,
                                                          .info = describe(c),
@@ -97,8 +108,10 @@ static ptie_status prepare(conversion *c, ptie_pool *pool) {
                                                          .command = p->provenance,
                                                          .compress = p->compress,
                                                          .pool = pool,
-                                                         .low = p->low,
-                                                         .high = p->high});
+                                                         .low = c->low,
+                                                         .high = c->high,
+                                                         .colours = c->colours,
+                                                         .played_hz = p->played_hz});
 }
 
 /* Reads frame i of the output. */
@@ -112,11 +125,32 @@ static ptie_status read_frame(conversion *c, int64_t i) {
     return PTIE_OK;
 }
 
+static ptie_status report(conversion *c, ptie_progress progress) {
+    return ptie_progress_report(progress, (uint64_t)++c->done, (uint64_t)(c->passes * c->frames), NULL);
+}
+
+/* The smallest and the largest value of all frames. */
+static ptie_status find_range(conversion *c, ptie_progress progress) {
+    const size_t pixels = (size_t)c->roi.width_px * (size_t)c->roi.height_px;
+    for (int64_t i = 0; i < c->frames; i++) {
+        PTIE_TRY(read_frame(c, i));
+        const ptie_extent extent = ptie_image_extent(c->frame, pixels);
+        c->low = i ? fmin(c->low, (double)extent.low) : (double)extent.low;
+        c->high = i ? fmax(c->high, (double)extent.high) : (double)extent.high;
+        PTIE_TRY(report(c, progress));
+    }
+    if (c->params->colours == PTIE_DIVERGING) {
+        c->high = fmax(fabs(c->low), fabs(c->high));
+        c->low = -c->high;
+    }
+    return PTIE_OK;
+}
+
 static ptie_status copy_frames(conversion *c, ptie_progress progress) {
     for (int64_t i = 0; i < c->frames; i++) {
         PTIE_TRY(read_frame(c, i));
         PTIE_TRY(ptie_io_append(c->output, c->frame));
-        PTIE_TRY(ptie_progress_report(progress, (uint64_t)i + 1, (uint64_t)c->frames, NULL));
+        PTIE_TRY(report(c, progress));
     }
     ptie_writer *output = c->output;
     c->output = NULL;
@@ -124,9 +158,11 @@ static ptie_status copy_frames(conversion *c, ptie_progress progress) {
 }
 
 ptie_status ptie_convert_recording(ptie_pool *pool, const ptie_convert_params *params,
-                                   ptie_progress progress) {
-    conversion c = {.params = params};
-    ptie_status status = prepare(&c, pool);
+                                   const uint32_t *colours, ptie_progress progress) {
+    conversion c = {.params = params, .colours = colours};
+    ptie_status status = open_input(&c);
+    if (status == PTIE_OK && c.passes > 1) status = find_range(&c, progress);
+    if (status == PTIE_OK) status = create_output(&c, pool);
     if (status == PTIE_OK) status = copy_frames(&c, progress);
     ptie_io_discard(c.output);
     ptie_io_close(c.input);

@@ -7,7 +7,8 @@
 
 #include "base/pool.h"
 
+/* colours: 256 of 0xRRGGBB for params->colours; NULL: grey. */
 ptie_status ptie_convert_recording(ptie_pool *pool, const ptie_convert_params *params,
-                                   ptie_progress progress);
+                                   const uint32_t *colours, ptie_progress progress);
 
 #endif
