@@ -129,8 +129,11 @@ static ptie_status report(conversion *c, ptie_progress progress) {
     return ptie_progress_report(progress, (uint64_t)++c->done, (uint64_t)(c->passes * c->frames), NULL);
 }
 
-/* The smallest and the largest value of all frames. */
+/* The smallest and the largest value of all frames; before that, may the output be written at all? */
 static ptie_status find_range(conversion *c, ptie_progress progress) {
+    ptie_output_file output;
+    PTIE_TRY(ptie_output_open(&output, c->params->output, c->params->overwrite));
+    ptie_output_discard(&output);
     const size_t pixels = (size_t)c->roi.width_px * (size_t)c->roi.height_px;
     for (int64_t i = 0; i < c->frames; i++) {
         PTIE_TRY(read_frame(c, i));

@@ -69,6 +69,28 @@ Images share a scale when asked
   > print([Image.open('flow_0%d.png' % i).text['ptie:offset'] for i in range(2)])"
   ['0.5', '0.5']
 
+A film of all frames has one range; for MATLAB, frames are the third dimension
+  $ /usr/bin/python3 -c "
+  > import numpy as np
+  > np.save('r.npy', np.arange(24, dtype='f4').reshape(3, 2, 4) - 8)"
+  $ ptie convert r.npy grey.y4m --fps 10 && ptie convert r.npy red.y4m --colours diverging && ptie convert r.npy r.mat
+  ! grey.y4m: from r.npy
+  ! red.y4m: from r.npy
+  ! r.mat: from r.npy
+  $ /usr/bin/python3 - <<'END'
+  > import numpy as np
+  > grey, red = open("grey.y4m", "rb").read(), open("red.y4m", "rb").read()
+  > print(grey[:grey.index(b"FRAME")], red[:red.index(b"FRAME")])
+  > print(grey[-14:-8], list(grey[-8:]))
+  > print("white is", [red[red.index(b"FRAME") + 36 + 8 * k] for k in range(3)])
+  > END
+  b'YUV4MPEG2 W4 H2 F10:1 Ip A1:1 Cmono XCOLORRANGE=FULL\n' b'YUV4MPEG2 W4 H2 F25:1 Ip A1:1 C444 XCOLORRANGE=LIMITED\n'
+  b'FRAME\n' [177, 188, 200, 211, 222, 233, 244, 255]
+  white is [234, 128, 128]
+  $ printf x > old.y4m; ptie convert r.npy old.y4m
+  ! ptie: old.y4m: exists already (use -f to overwrite)
+  [1]
+
 What cannot be taken is told
   $ /usr/bin/python3 -c "import numpy as np; np.save('r.npy', np.zeros((5, 4, 6), 'f4'))"
   $ ptie convert r.npy a.tif --frames 5:
@@ -87,7 +109,7 @@ What cannot be taken is told
   ! ptie: convert: --range: expected values low:high, such as -0.5:2, found '3:1'
   [2]
   $ ptie convert r.npy a.bmp
-  ! ptie: a.bmp: cannot write this kind of file (expected .npy .tif .tiff .h5 .hdf5 or .png)
+  ! ptie: a.bmp: cannot write this kind of file (expected .npy .tif .tiff .h5 .hdf5 .png .mat .y4m .mp4 or .mraw)
   [1]
   $ ptie convert r.npy ./r.npy -f
   ! ptie: ./r.npy: would be written over r.npy (expected a name of its own)

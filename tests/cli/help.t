@@ -405,8 +405,8 @@ convert
   Writes a recording as another kind of file, or a part of it.
   
   Examples:
-    # what the camera wrote, for Python and MATLAB; a third of the size
-    ptie convert shot.h5 small.h5 --compress
+    # what the camera wrote, for Python and MATLAB
+    ptie convert shot.cihx shot.h5 --compress
   
     # phase as a stack for Fiji, with scale and frame interval
     ptie convert phase.h5 phase.tif
@@ -417,14 +417,24 @@ convert
     # images with one grey scale for all
     ptie convert phase.h5 flow_%04d.png --range -1:3
   
+    # a film for slides, blue below 0 and red above
+    ptie convert phase.h5 flow.mp4 --colours diverging --fps 10
+  
+    # for MATLAB and Octave
+    ptie convert phase.h5 phase.mat --frames 0:50
+  
   Usage:
     ptie convert INPUT OUTPUT [options]
   
   Options:
         --frames A:B:STEP     frames to take, B not included
         --roi x,y,w,h         rectangle to take, pixels
-        --range LOW:HIGH      PNG: values of black and white, instead of each
-                              frame's own
+        --range LOW:HIGH      values of black and white in images and video; if
+                              not given, the extent of each image, of the whole
+                              video
+        --colours MAP         of video (grey, viridis, diverging; default: grey)
+        --fps RATE            of video: frames per second when shown (default: 25
+                              Hz)
         --compress            HDF5: shuffled and deflated
     -f, --force               replace existing output
     -T, --threads N           worker threads; 0 = all processors (default: 0)
@@ -436,8 +446,10 @@ convert
   INPUT is anything 'ptie info' knows as a recording: HDF5 (FILE.h5 or
   FILE.h5:/path/inside), TIFF, NPY, PNG, a folder of numbered images, or a
   pattern with one %d. The ending of OUTPUT decides what is written: .h5 .tif
-  .npy .png (a pattern with one %d for several frames). Integers of up to 16
-  bits stay integers, everything else becomes float32.
+  .npy .mat .mraw .png (a pattern with one %d for several frames) .y4m, and .mp4
+  where the program ffmpeg is installed. Integers of up to 16 bits stay integers,
+  everything else becomes float32. Unit, pixel, frame rate and frame numbers go
+  along where the kind of file has a place for them.
 
 info
   $ ptie help info

@@ -70,15 +70,47 @@ void support_put_be32(unsigned char *bytes, uint32_t value) {
     for (int i = 0; i < 4; i++) bytes[i] = (unsigned char)(value >> (24 - 8 * i));
 }
 
-void support_python(const char *program, const char *path) {
-    if (access("/usr/bin/python3", X_OK) != 0) {
-        print_message("# no /usr/bin/python3\n");
+typedef struct interpreter {
+    const char *name, *test, *command; /* is it there?  how is it called? */
+    int success;                       /* its exit status then */
+} interpreter;
+
+static void run_with(const interpreter *with, const char *program, const char *path) {
+    char command[2200];
+    snprintf(command, sizeof command, "%s >/dev/null 2>&1", with->test);
+    if (system(command) != 0) {
+        print_message("# %s is not installed\n", with->name);
         skip();
     }
-    const char *script = support_temporary("program.py");
-    char command[2200];
+    const char *script = support_temporary("program");
     support_write(script, program, strlen(program));
-    snprintf(command, sizeof command, "/usr/bin/python3 '%s' '%s' 1>&2", script, path);
+    snprintf(command, sizeof command, "%s '%s' '%s' 1>&2", with->command, script, path);
     int result = system(command);
-    if (!WIFEXITED(result) || WEXITSTATUS(result) != 0) fail_msg("%s: Python disagrees", path);
+    if (!WIFEXITED(result) || WEXITSTATUS(result) != with->success)
+        fail_msg("%s: %s disagrees", path, with->name);
+}
+
+void support_python(const char *program, const char *path) {
+    run_with(&(interpreter){"/usr/bin/python3", "test -x /usr/bin/python3", "/usr/bin/python3", 0}, program,
+             path);
+}
+
+void support_octave(const char *program, const char *path) {
+    run_with(&(interpreter){"octave-cli", "command -v octave-cli", "octave-cli --norc --no-history --quiet", 0},
+             program, path);
+}
+
+/* As its library: the program itself wants a display.  BeanShell's exit status is 0 after an exception, too: so the end
+ * of the program has one of its own. */
+void support_imagej(const char *program, const char *path) {
+#define JARS "/usr/share/java/ij.jar:/usr/share/java/bsh.jar"
+    char whole[4096];
+    int length = snprintf(whole, sizeof whole,
+                          "check(boolean right, what) { if (!right) throw new Exception(\"\" + what); }\n"
+                          "%s\nSystem.exit(77);\n", program);
+    assert_true(length > 0 && (size_t)length < sizeof whole);
+    run_with(&(interpreter){"ImageJ (ij.jar, bsh.jar) or java",
+                            "test -e /usr/share/java/ij.jar -a -e /usr/share/java/bsh.jar && command -v java",
+                            "java -Djava.awt.headless=true -cp " JARS " bsh.Interpreter", 77},
+             whole, path);
 }

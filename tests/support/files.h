@@ -23,7 +23,11 @@ void support_check_truncations(const char *path, support_file_fn read, size_t pa
 uint32_t support_crc32(const unsigned char *data, size_t bytes);
 void support_put_be32(unsigned char *bytes, uint32_t value);
 
-/* Runs a Python program with `path` as its argument; skips the test where there is no Python. */
+/* Runs a program of other software with `path` as its argument, which fails by its exit status; skips the test, and
+ * says so, where that software is not installed.  Octave: argv(){1} is the path, an error() fails.  ImageJ: BeanShell
+ * with ImageJ's classes, bsh.args[0] is the path; check(condition, found) and exceptions fail. */
 void support_python(const char *program, const char *path);
+void support_octave(const char *program, const char *path);
+void support_imagej(const char *program, const char *path);
 
 #endif
