@@ -20,39 +20,36 @@ static double total(const sums *s) {
     return all;
 }
 
-PTIE_INLINE double deviation(float value, uint8_t has, uint8_t label, double level) {
-    return has == label ? (double)value - level : 0;
+/* Of a region: number of pixels, and sums of (map - level) and its square. */
+typedef struct moments {
+    sums count, first, second;
+} moments;
+
+PTIE_INLINE void add_pixel(moments *m, size_t lane, double value, double in) {
+    m->count.value[lane] += in;
+    m->first.value[lane] += in * value;
+    m->second.value[lane] += in * value * value;
 }
 
-/* Adds (map - level)^power over a region, power 1 or 2. */
-PTIE_CLONES static void add_powers(sums *s, const float *map, const uint8_t *labels, size_t pixels,
-                                   uint8_t label, double level, int power) {
-    const size_t whole = pixels / LANES * LANES;
-    for (size_t i = 0; i < whole; i += LANES)
-        for (size_t l = 0; l < LANES; l++) {
-            const double d = deviation(map[i + l], labels[i + l], label, level);
-            s->value[l] += power == 1 ? d : d * d;
+PTIE_CLONES static void add_regions(moments *jet, moments *background, const float *map, const uint8_t *labels,
+                                    size_t pixels, double level) {
+    for (size_t i = 0; i < pixels; i += LANES) {
+        const size_t count = pixels - i < LANES ? pixels - i : LANES;
+        for (size_t l = 0; l < count; l++) {
+            const double value = (double)map[i + l] - level;
+            add_pixel(jet, l, value, labels[i + l] == PTIE_JET);
+            add_pixel(background, l, value, labels[i + l] == PTIE_BACKGROUND);
         }
-    for (size_t i = whole; i < pixels; i++) {
-        const double d = deviation(map[i], labels[i], label, level);
-        s->value[i - whole] += power == 1 ? d : d * d;
     }
 }
 
 typedef struct region {
-    size_t count;
-    double mean, variance;
+    double count, mean, variance;
 } region;
 
-static region measure(const float *map, const uint8_t *labels, size_t pixels, uint8_t label) {
-    region r = {0};
-    sums first = {{0}}, second = {{0}};
-    for (size_t i = 0; i < pixels; i++) r.count += labels[i] == label;
-    add_powers(&first, map, labels, pixels, label, 0, 1);
-    r.mean = total(&first) / (double)r.count;
-    add_powers(&second, map, labels, pixels, label, r.mean, 2);
-    r.variance = total(&second) / (double)r.count;
-    return r;
+static region region_of(const moments *m, double level) {
+    const double count = total(&m->count), off = total(&m->first) / count;
+    return (region){count, level + off, fmax(total(&m->second) / count - off * off, 0)};
 }
 
 /* Three rows around a line of the map; at an edge of the map two of them are the same. */
@@ -80,7 +77,7 @@ PTIE_CLONES static void add_gradients(sums *sum, const stencil *s, const uint8_t
 }
 
 static double mean_gradient(const float *map, const uint8_t *labels, ptrdiff_t width, ptrdiff_t height,
-                            size_t jet_pixels) {
+                            double jet_pixels) {
     sums sum = {{0}};
     for (ptrdiff_t y = 0; y < height; y++) {
         const ptrdiff_t up = y > 0 ? y - 1 : 0, down = y < height - 1 ? y + 1 : y;
@@ -88,20 +85,24 @@ static double mean_gradient(const float *map, const uint8_t *labels, ptrdiff_t w
                            down > up ? 1.0 / (double)(down - up) : 0};
         add_gradients(&sum, &s, labels + y * width, width);
     }
-    return total(&sum) / (double)jet_pixels;
+    return total(&sum) / jet_pixels;
 }
 
 ptie_status ptie_metrics_flow(ptie_flow_metrics *out, const float *map, const uint8_t *labels,
                               int32_t width, int32_t height) {
     PTIE_TRY(ptie_image_finite(map, width, height, "map"));
     const size_t pixels = (size_t)width * (size_t)height;
-    const region jet = measure(map, labels, pixels, PTIE_JET);
-    const region background = measure(map, labels, pixels, PTIE_BACKGROUND);
+    /* Sums about a level inside the map's values: squares of the values themselves could be far larger than the
+       variance. */
+    const double level = (double)map[0];
+    moments of_jet = {0}, of_background = {0};
+    add_regions(&of_jet, &of_background, map, labels, pixels, level);
+    const region jet = region_of(&of_jet, level), background = region_of(&of_background, level);
     if (jet.count == 0 || background.count == 0)
         return PTIE_FAIL(
             PTIE_EINVAL,
-            "labels: a region is empty (expected pixels of both, found %zu of the jet and "
-            "%zu of the background)",
+            "labels: a region is empty (expected pixels of both, found %.0f of the jet and "
+            "%.0f of the background)",
             jet.count, background.count);
     *out = (ptie_flow_metrics){
         .mgm = mean_gradient(map, labels, width, height, jet.count),

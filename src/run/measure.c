@@ -104,16 +104,16 @@ PTIE_CLONES static void add_roughness(double sum[LANES], const float *const a[3]
         }
 }
 
-double ptie_run_plane_noise(const float *a, const float *b, int32_t width_px, int32_t height_px) {
+double ptie_run_plane_noise(ptie_lit_plane a, ptie_lit_plane b, int32_t width_px, int32_t height_px) {
     const ptrdiff_t width = width_px;
-    const size_t pixels = (size_t)width_px * (size_t)height_px;
-    const float of_a = (float)(1 / ptie_run_mean(a, pixels)), of_b = (float)(1 / ptie_run_mean(b, pixels));
+    const float of_a = (float)(1 / a.mean), of_b = (float)(1 / b.mean);
     const ptrdiff_t counted = (width - 2) / LANES * LANES;
     double sum[LANES] = {0};
     if (counted <= 0 || height_px < 3) return (double)NAN;
     for (ptrdiff_t y = 1; y < height_px - 1; y++) {
-        const float *const rows_a[3] = {a + (y - 1) * width, a + y * width, a + (y + 1) * width};
-        const float *const rows_b[3] = {b + (y - 1) * width, b + y * width, b + (y + 1) * width};
+        const float *above_a = a.plane + (y - 1) * width, *above_b = b.plane + (y - 1) * width;
+        const float *const rows_a[3] = {above_a, above_a + width, above_a + 2 * width};
+        const float *const rows_b[3] = {above_b, above_b + width, above_b + 2 * width};
         add_roughness(sum, rows_a, rows_b, of_a, of_b, width);
     }
     /* The mask 1 -2 1 x 1 -2 1 has norm 6; E|normal| = sqrt(2/pi) sigma; two planes: sqrt 2. */

@@ -37,7 +37,11 @@ ptie_status ptie_run_measure(double *value, double *background_rad, const float 
 
 /* Relative white noise of two planes (both with that much), from the second differences of their difference
    (Immerkaer 1996), which neither smooth flow nor what both planes see passes. */
-double ptie_run_plane_noise(const float *a, const float *b, int32_t width_px, int32_t height_px);
+typedef struct ptie_lit_plane {
+    const float *plane;
+    double mean;
+} ptie_lit_plane;
+double ptie_run_plane_noise(ptie_lit_plane a, ptie_lit_plane b, int32_t width_px, int32_t height_px);
 
 /* Mean of a plane; share of `count` samples that are at least `limit`. */
 double ptie_run_mean(const float *plane, size_t count);

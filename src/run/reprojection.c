@@ -1,51 +1,59 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+/* Sums over pixels are taken over the spectrum (Parseval), so no map has to be transformed back. */
 #include "run/reprojection.h"
 
 #include <math.h>
+#include <string.h>
 
+#include "base/clones.h"
 #include "base/memory.h"
-#include "metrics/metrics.h"
-#include "optics/optics.h"
+#include "fft/fft.h"
 #include "run/planes.h"
 #include "tie/derivative.h"
 
+#define TWO_PI 6.283185307179586476925
+
 struct ptie_reprojection {
     ptie_tie_weights weights;
-    int32_t width, height;
-    double defocus_m;
-    ptie_optics *optics;
-    size_t pixels, bytes; /* of one worker's scratch */
+    ptie_fft *fft;
+    /* Per entry of the spectrum: the root of how often it counts, 0 for the mean, which is not compared; and that
+       times the forward model, a phase's dI/dz / I. */
+    float *count, *forward;
+    size_t pixels, floats, bytes; /* of an image, a spectrum, and one worker's scratch */
     unsigned char *scratch;
 };
 
 /* A worker's scratch. */
 typedef struct work {
-    float *measured, *plus, *minus; /* (H, W) */
-    void *optics;
+    float *image, *measured, *reprojected; /* (H, W); spectra */
 } work;
 
 static work carve(const ptie_reprojection *r, ptie_slicer *slicer) {
     work w;
-    w.measured = ptie_slice(slicer, r->pixels, sizeof(float));
-    w.plus = ptie_slice(slicer, r->pixels, sizeof(float));
-    w.minus = ptie_slice(slicer, r->pixels, sizeof(float));
-    w.optics = ptie_slice(slicer, ptie_optics_scratch(r->optics), 1);
+    w.image = ptie_slice(slicer, r->pixels, sizeof(float));
+    w.measured = ptie_slice(slicer, r->floats, sizeof(float));
+    w.reprojected = ptie_slice(slicer, r->floats, sizeof(float));
     return w;
+}
+
+static double forward_response(double k2, const void *context) {
+    return ((const ptie_solver_params *)context)->wavelength_m / TWO_PI * k2;
 }
 
 static ptie_status build(ptie_reprojection *r, const ptie_solver_params *solver, int32_t workers) {
     PTIE_TRY(ptie_tie_weigh(&r->weights, solver));
-    /* Linear, so the distance is free: the one of the recording keeps the numbers near 1. */
-    PTIE_TRY(ptie_optics_plan(&r->optics, &(ptie_optics_params){
-                                              .struct_size = sizeof(ptie_optics_params),
-                                              .width_px = r->width,
-                                              .height_px = r->height,
-                                              .pixel_m = solver->pixel_m,
-                                              .wavelength_m = solver->wavelength_m,
-                                              .defocus_m = r->defocus_m,
-                                              .boundary = solver->boundary,
-                                              .propagation = PTIE_TIE_SPECTRAL,
-                                          }));
+    PTIE_TRY(ptie_fft_create(&r->fft, solver->boundary == PTIE_MIRROR ? PTIE_FFT_MIRROR : PTIE_FFT_REAL,
+                             solver->width_px, solver->height_px));
+    const size_t entries = ptie_fft_filter_floats(r->fft);
+    PTIE_TRY(ptie_alloc_status(&r->count, entries, sizeof(float), "reprojection"));
+    PTIE_TRY(ptie_alloc_status(&r->forward, entries, sizeof(float), "reprojection"));
+    ptie_fft_filter_fill(r->fft, r->forward, solver->pixel_m, forward_response, solver);
+    const int32_t columns = ptie_fft_columns(r->fft);
+    for (int32_t i = 0; i < (int32_t)entries; i++) {
+        r->count[i] = i > 0 ? (float)sqrt(ptie_fft_share(r->fft, i % columns, i / columns)) : 0;
+        r->forward[i] *= r->count[i];
+    }
+    r->floats = ptie_fft_spectrum_floats(r->fft);
     ptie_slicer slicer = {0};
     carve(r, &slicer);
     r->bytes = slicer.used;
@@ -58,10 +66,7 @@ ptie_status ptie_reprojection_create(ptie_reprojection **out, const ptie_rig *ri
     ptie_reprojection *r;
     PTIE_TRY(ptie_alloc_status(&r, 1, sizeof *r, "run"));
     const ptie_solver_params solver = ptie_rig_solver(rig, width_px, height_px);
-    r->width = width_px;
-    r->height = height_px;
     r->pixels = (size_t)width_px * (size_t)height_px;
-    r->defocus_m = fabs(rig->plane[PTIE_PLUS].defocus_m);
     ptie_status status = build(r, &solver, workers);
     if (status == PTIE_OK)
         *out = r;
@@ -72,22 +77,54 @@ ptie_status ptie_reprojection_create(ptie_reprojection **out, const ptie_rig *ri
 
 void ptie_reprojection_free(ptie_reprojection *r) {
     if (!r) return;
-    ptie_optics_free(r->optics);
+    ptie_fft_free(r->fft);
+    ptie_free(r->count);
+    ptie_free(r->forward);
     ptie_free(r->scratch);
     ptie_free(r);
 }
 
+/* Sums of (a - b)^2 and of b^2, in lanes: this vectorises, and every instruction set gives the same bits. */
+enum { LANES = 16 };
+typedef struct sums {
+    double off[LANES], all[LANES];
+} sums;
+
+PTIE_CLONES static void add_squares(sums *s, const float *a, const float *b, size_t count) {
+    const size_t whole = count / LANES * LANES;
+    for (size_t i = 0; i < whole; i += LANES)
+        for (size_t l = 0; l < LANES; l++) {
+            const double d = (double)a[i + l] - (double)b[i + l];
+            s->off[l] += d * d;
+            s->all[l] += (double)b[i + l] * (double)b[i + l];
+        }
+    for (size_t i = whole; i < count; i++) {
+        const double d = (double)a[i] - (double)b[i];
+        s->off[i - whole] += d * d;
+        s->all[i - whole] += (double)b[i] * (double)b[i];
+    }
+}
+
+static double relative_distance(const float *a, const float *b, size_t count) {
+    sums s = {{0}, {0}};
+    double off = 0, all = 0;
+    add_squares(&s, a, b, count);
+    for (int l = 0; l < LANES; l++) off += s.off[l], all += s.all[l];
+    return all > 0 ? sqrt(off / all) : (double)NAN;
+}
+
 ptie_status ptie_reprojection_measure(const ptie_reprojection *r, int32_t worker, double *residual,
-                                      const float *const *maps, size_t count,
-                                      const float *const *planes) {
+                                      const float *const *maps, size_t count, const float *const *planes) {
     const work w = carve(r, &(ptie_slicer){.base = r->scratch + (size_t)worker * r->bytes});
-    const double scale = 1 / (2 * r->defocus_m);
-    PTIE_TRY(ptie_tie_derivative(w.measured, &r->weights, planes));
+    const size_t floats = ptie_fft_filter_floats(r->fft) * ptie_fft_entry_floats(r->fft);
+    PTIE_TRY(ptie_tie_derivative(w.image, &r->weights, planes));
+    ptie_fft_forward(r->fft, w.measured, w.image);
+    ptie_fft_filter_apply(r->fft, w.measured, r->count);
     for (size_t n = 0; n < count; n++) {
-        PTIE_TRY(ptie_optics_defocus(r->optics, w.plus, w.minus, maps[n], NULL, w.optics));
-        for (size_t i = 0; i < r->pixels; i++)
-            w.plus[i] = (float)(scale * ((double)w.plus[i] - (double)w.minus[i]));
-        PTIE_TRY(ptie_metrics_residual(&residual[n], w.plus, w.measured, r->width, r->height));
+        memcpy(w.image, maps[n], r->pixels * sizeof *w.image);
+        ptie_fft_forward(r->fft, w.reprojected, w.image);
+        ptie_fft_filter_apply(r->fft, w.reprojected, r->forward);
+        residual[n] = relative_distance(w.reprojected, w.measured, floats);
     }
     return PTIE_OK;
 }

@@ -177,19 +177,21 @@ static ptie_status prepare_planes(const run *r, const slot *s, const desk *d) {
     return ptie_prepare_run(r->preparation, images, d->plane, d->scratch);
 }
 
-static double brightness(const run *r, const desk *d) {
+/* Mean of all planes, and of each. */
+static double brightness(const run *r, const desk *d, double mean[PTIE_ROLES]) {
     double sum = 0;
-    for (int32_t k = 0; k < r->shape.planes; k++) sum += ptie_run_mean(d->plane[k], r->pixels);
+    for (int32_t k = 0; k < r->shape.planes; k++) sum += mean[k] = ptie_run_mean(d->plane[k], r->pixels);
     return sum / r->shape.planes;
 }
 
 /* Of the first and the last frame as the solver gets them. */
 static ptie_status hash_planes(run *r, uint64_t *hash) {
+    double mean[PTIE_ROLES];
     *hash = PTIE_HASH_BEGIN;
     for (int end = 0; end < 2; end++) {
         PTIE_TRY(ptie_source_read(r->source, recorded_frame(r, end ? r->frames - 1 : 0), r->slots[0].image));
         PTIE_TRY(prepare_planes(r, &r->slots[0], &r->desks[0]));
-        if (end == 0) r->first_brightness = brightness(r, &r->desks[0]);
+        if (end == 0) r->first_brightness = brightness(r, &r->desks[0], mean);
         for (int32_t k = 0; k < r->shape.planes; k++)
             *hash = ptie_hash(*hash, r->desks[0].plane[k], r->pixels * sizeof(float));
     }
@@ -275,13 +277,15 @@ static ptie_status compare_with_planes(const run *r, slot *s, const desk *d, int
 
 /* What the images and planes say of themselves. */
 static void inspect_planes(const run *r, slot *s, const desk *d) {
-    double *number = s->row + PTIE_ROW_OF_FRAME;
-    const double all = brightness(r, d), limit = r->params->rig->saturation_counts;
+    double *number = s->row + PTIE_ROW_OF_FRAME, mean[PTIE_ROLES];
+    const double all = brightness(r, d, mean), limit = r->params->rig->saturation_counts;
     double off = 0, saturated = 0;
-    for (int32_t k = 0; k < r->shape.planes; k++) off = fmax(off, fabs(ptie_run_mean(d->plane[k], r->pixels) / all - 1));
-    for (int32_t i = 0; i < r->recorded.images; i++)
+    for (int32_t k = 0; k < r->shape.planes; k++) off = fmax(off, fabs(mean[k] / all - 1));
+    for (int32_t i = 0; i < r->recorded.images && limit > 0; i++)
         saturated = fmax(saturated, ptie_run_share_above(s->image[i], r->recorded_pixels, limit));
-    const double sigma = ptie_run_plane_noise(d->plane[0], d->plane[1], r->shape.width_px, r->shape.height_px);
+    const double sigma = ptie_run_plane_noise((ptie_lit_plane){d->plane[0], mean[0]},
+                                              (ptie_lit_plane){d->plane[1], mean[1]}, r->shape.width_px,
+                                              r->shape.height_px);
     number[PTIE_NOISE_RAD] = ptie_frame_noise_rad(r->plan, sigma);
     number[PTIE_SATURATED] = limit > 0 ? saturated : (double)NAN;
     number[PTIE_IMBALANCE] = off;
