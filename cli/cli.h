@@ -56,6 +56,15 @@ typedef struct compute_options {
     {0, "cpu", OPTION_TEXT, &(c).cpu, "LEVEL", .help = "auto, scalar, avx2 or avx512"},            \
     {0, "progress", OPTION_CHOICE, &(c).progress, "HOW", .choices = progress_styles,               \
      .help = "on stderr; auto is a bar on a terminal"}
+
+/* Planes in files of their own; `plane` is const char *[PTIE_ROLES]. */
+#define PLANE_OPTIONS(plane)                                                                       \
+    {0, "plus", OPTION_TEXT, &(plane)[PTIE_PLUS], "FILE",                                          \
+     .help = "planes in files of their own: beyond focus"},                                        \
+    {0, "minus", OPTION_TEXT, &(plane)[PTIE_MINUS], "FILE", .help = "before focus"},               \
+    {0, "zero", OPTION_TEXT, &(plane)[PTIE_ZERO], "FILE", .help = "in focus"},                     \
+    {0, "plus2", OPTION_TEXT, &(plane)[PTIE_PLUS2], "FILE", .help = "farther beyond focus"},       \
+    {0, "minus2", OPTION_TEXT, &(plane)[PTIE_MINUS2], "FILE", .help = "farther before focus"}
 /* clang-format on */
 
 /* Starts the library. */

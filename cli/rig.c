@@ -12,11 +12,15 @@ static const struct {
     int (*run)(int argc, char **argv);
 } rig_commands[] = {
     {"new", "writes a rig file that explains every key", rig_new},
+    {"check", "compares a rig with a recording", rig_check},
+    {"calibrate", "measures registration and gains of the planes", rig_calibrate},
 };
 
 static int print_overview(void) {
     printf("Rig files: how a set-up is built, written down once.\n\n"
            "  ptie rig new --layout mosaic --mosaic crysta --pixel \"20 um\" -o lab.ini\n"
+           "  ptie rig calibrate lab.ini --reference noflow.mraw\n"
+           "  ptie rig check lab.ini flow.mraw\n"
            "  ptie run --rig lab.ini flow.mraw --model models/paper.safetensors -o phase.h5\n\n"
            "Commands:\n");
     for (size_t i = 0; i < COUNT(rig_commands); i++)

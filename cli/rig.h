@@ -4,5 +4,7 @@
 #define CLI_RIG_H
 
 int rig_new(int argc, char **argv);
+int rig_check(int argc, char **argv);
+int rig_calibrate(int argc, char **argv);
 
 #endif

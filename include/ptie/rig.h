@@ -88,4 +88,47 @@ typedef struct ptie_rig_setting {
 PTIE_API PTIE_NODISCARD ptie_status ptie_rig_edit(const char *to, const char *from, const ptie_rig_setting *settings,
                                                   size_t count, bool overwrite);
 
+/* ---- Is a rig right for a recording? ---- */
+
+typedef enum ptie_verdict {
+    PTIE_GOOD,
+    PTIE_DOUBTFUL, /* the result is worse than it could be */
+    PTIE_WRONG     /* the result means nothing */
+} ptie_verdict;
+
+typedef struct ptie_rig_finding {
+    const char *name;  /* "saturation"; static */
+    ptie_verdict verdict;
+    double value;      /* the number that decided, in the unit its text says; NaN if it could not be measured */
+    char text[240];    /* one line for people */
+} ptie_rig_finding;
+
+enum { PTIE_RIG_FINDINGS = 16 };
+typedef struct ptie_rig_report {
+    ptie_rig_finding finding[PTIE_RIG_FINDINGS];
+    int32_t count;
+} ptie_rig_report;
+
+/* Compares a rig with a recording, of which it reads some frames: sizes, saturation, exposure, whether a mosaic is one
+   (P14), the planes' means, flat field, mask, registration left over (P7), at which periods linear TIE still holds
+   (P13), noise and what it will be in the phase (M8).  recording, plane: as in ptie_run_params; plane may be NULL.
+   A finding that is wrong is no error.  Errors: those of reading. */
+PTIE_API PTIE_NODISCARD ptie_status ptie_rig_check(const ptie_rig *rig, const char *recording,
+                                                   const char *const plane[PTIE_ROLES], ptie_rig_report *report);
+
+/* ---- Calibration ---- */
+
+typedef struct ptie_plane_calibration {
+    bool measured;              /* false for I+, planes that are not used, and those that show nothing in common */
+    ptie_registration where;    /* on the grid of I+, with standard deviations */
+    double gain, gain_deviation; /* that brings the plane's mean to that of I+; its standard deviation over frames */
+} ptie_plane_calibration;
+
+/* Measures where the planes lie and their gains in frames without flow (of a target, or of structured light): the
+   rig's own registration and gains are not used.  recording, plane: as in ptie_rig_check.  Errors: those of reading;
+   PTIE_EINVAL (a rig of one plane). */
+PTIE_API PTIE_NODISCARD ptie_status ptie_rig_calibrate(ptie_plane_calibration calibration[PTIE_ROLES],
+                                                       const ptie_rig *rig, const char *recording,
+                                                       const char *const plane[PTIE_ROLES]);
+
 #endif

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "api/params.h"
+#include "run/check.h"
 #include "run/planes.h"
 #include "run/rig.h"
 
@@ -77,4 +78,29 @@ ptie_status ptie_rig_take(ptie_rig *rig, const ptie_rig *given, const char *wher
 ptie_status ptie_rig_replace(char path[512], const char *file, const char *where) {
     if (!file || snprintf(path, 512, "%s", file) < 512) return PTIE_OK;
     return PTIE_FAIL(PTIE_EINVAL, "%s: path longer than 511 bytes: %s", where, file);
+}
+
+static ptie_status check_files(const char *recording, const char *const plane[PTIE_ROLES], const char *where) {
+    if (recording || (plane && plane[PTIE_PLUS])) return PTIE_OK;
+    return ptie_check_pointer(NULL, where, "recording");
+}
+
+ptie_status ptie_rig_check(const ptie_rig *rig, const char *recording, const char *const plane[PTIE_ROLES],
+                           ptie_rig_report *report) {
+    static const char where[] = "ptie_rig_check";
+    ptie_rig own;
+    PTIE_TRY(ptie_check_pointer(report, where, "report"));
+    PTIE_TRY(check_files(recording, plane, where));
+    PTIE_TRY(ptie_rig_take(&own, rig, where));
+    return ptie_rig_compare(&own, recording, plane, report);
+}
+
+ptie_status ptie_rig_calibrate(ptie_plane_calibration calibration[PTIE_ROLES], const ptie_rig *rig,
+                               const char *recording, const char *const plane[PTIE_ROLES]) {
+    static const char where[] = "ptie_rig_calibrate";
+    ptie_rig own;
+    PTIE_TRY(ptie_check_pointer(calibration, where, "calibration"));
+    PTIE_TRY(check_files(recording, plane, where));
+    PTIE_TRY(ptie_rig_take(&own, rig, where));
+    return ptie_rig_measure(calibration, &own, recording, plane);
 }

@@ -25,6 +25,7 @@ static work carve(const ptie_prepare *p, ptie_slicer *slicer) {
     size_t step = p->splitter ? ptie_prep_splitter_scratch(p->splitter) : 0;
     for (int32_t i = 0; i < p->measured; i++)
         if (p->resampler[i]) step = larger(step, ptie_prep_resampler_scratch(p->resampler[i]));
+    if (p->light) step = larger(step, ptie_fill_scratch_bytes(p->width, p->height));
     for (int32_t i = 0; i < p->images; i++) w.image[i] = ptie_slice(slicer, p->sensor_pixels, sizeof(float));
     for (int32_t i = 0; i < p->channels; i++) w.channel[i] = ptie_slice(slicer, p->pixels, sizeof(float));
     for (int32_t i = 0; i < p->planes; i++) w.plane[i] = ptie_slice(slicer, p->pixels, sizeof(float));
@@ -113,14 +114,9 @@ ptie_status ptie_prepare_raw(const ptie_prepare *p, const float *const *images, 
     return PTIE_OK;
 }
 
-/* Opaque pixels become the planes' common mean: there the planes do not differ. */
 static void fill_opaque(const ptie_prepare *p, const work *w) {
-    double level = 0;
     if (!p->light) return;
-    for (int32_t i = 0; i < p->planes; i++) level += ptie_masked_mean(w->plane[i], p->light, p->pixels) / p->planes;
-    for (int32_t i = 0; i < p->planes; i++)
-        for (size_t k = 0; k < p->pixels; k++)
-            if (!p->light[k]) w->plane[i][k] = (float)level;
+    for (int32_t i = 0; i < p->planes; i++) ptie_fill_masked(w->plane[i], p->light, p->width, p->height, w->step);
 }
 
 ptie_status ptie_prepare_run(const ptie_prepare *p, const float *const *images, float *const *maps,

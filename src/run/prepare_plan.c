@@ -15,6 +15,10 @@
 /* Darker than this share of the mean, a reference is not divided by: beyond, it is noise that would be amplified. */
 #define FLAT_FLOOR 0.05
 
+/* An opaque mask from the light: of so many frames where there is no reference, without specks and pinholes up to
+   4 pixels, and wider by what diffraction at an edge spoils. */
+enum { MASK_FRAMES = 8, MASK_CLEAN_PX = 2, MASK_MARGIN_PX = 2 };
+
 static ptie_status plan_channels(ptie_prepare *p, const ptie_source_shape *source) {
     p->width = source->width_px;
     p->height = source->height_px;
@@ -128,7 +132,7 @@ static ptie_status use_reference(still *s) {
     return PTIE_OK;
 }
 
-static ptie_status read_mask(still *s) {
+static ptie_status read_mask(still *s, uint8_t *mask) {
     const ptie_prepare *p = s->plan;
     ptie_recording *recording;
     PTIE_TRY(ptie_io_open(&recording, p->rig.mask));
@@ -138,16 +142,48 @@ static ptie_status read_mask(still *s) {
         status = PTIE_FAIL(PTIE_ESIZE, "%s: mask differs from the planes in size (expected %d x %d px, found %d x %d)",
                            p->rig.mask, p->width, p->height, info->width_px, info->height_px);
     if (status == PTIE_OK) status = ptie_io_read(recording, 0, s->plane[0]);
-    for (size_t i = 0; i < p->pixels && status == PTIE_OK; i++) p->light[i] = s->plane[0][i] != 0;
+    for (size_t i = 0; i < p->pixels && status == PTIE_OK; i++) mask[i] = s->plane[0][i] != 0;
     ptie_io_close(recording);
+    return status;
+}
+
+/* The light of all planes together, without flow if the rig has a reference. */
+static ptie_status find_light(still *s, float *light) {
+    const ptie_prepare *p = s->plan;
+    if (p->rig.reference[0])
+        PTIE_TRY(ptie_source_mean(s->image, &s->shape, &p->rig, p->rig.reference));
+    else
+        PTIE_TRY(ptie_source_average(s->source, s->image, MASK_FRAMES));
+    PTIE_TRY(planes_after(s, PTIE_STEP_REGISTRATION));
+    for (size_t i = 0; i < p->pixels; i++) light[i] = 0;
+    for (int32_t k = 0; k < p->measured; k++)
+        for (size_t i = 0; i < p->pixels; i++) light[i] += s->plane[k][i];
+    return PTIE_OK;
+}
+
+static ptie_status threshold_mask(still *s, uint8_t *mask) {
+    const ptie_prepare *p = s->plan;
+    float *light;
+    PTIE_TRY(ptie_alloc_status(&light, p->pixels, sizeof *light, "run: mask"));
+    ptie_status status = find_light(s, light);
+    if (status == PTIE_OK)
+        status = ptie_prep_opaque_mask(mask, light, p->width, p->height, p->rig.mask_below, MASK_CLEAN_PX,
+                                       MASK_MARGIN_PX);
+    ptie_free(light);
     return status;
 }
 
 static ptie_status find_mask(still *s) {
     ptie_prepare *p = s->plan;
-    if (!p->rig.mask[0]) return PTIE_OK;
-    PTIE_TRY(ptie_alloc_status(&p->light, p->pixels, 1, "run: mask"));
-    return read_mask(s);
+    uint8_t *mask;
+    if (!p->rig.mask[0] && p->rig.mask_below == 0) return PTIE_OK;
+    PTIE_TRY(ptie_alloc_status(&mask, p->pixels, 1, "run: mask"));
+    ptie_status status = p->rig.mask[0] ? read_mask(s, mask) : threshold_mask(s, mask);
+    if (status == PTIE_OK)
+        p->light = mask;
+    else
+        ptie_free(mask);
+    return status;
 }
 
 /* A bin counts if all of its pixels do. */

@@ -94,6 +94,7 @@ static ptie_status open_images(ptie_source *source, const ptie_run_params *param
     source->shape.height_px = info->height_px;
     source->shape.frames = info->frames;
     source->shape.frame_rate_hz = info->frame_rate_hz;
+    source->shape.white_level = info->white_level;
     return PTIE_OK;
 }
 
@@ -113,36 +114,47 @@ ptie_status ptie_source_open(ptie_source **out, const ptie_run_params *params) {
     return open_source(out, params, false);
 }
 
-static ptie_status add_frames(ptie_source *source, double *sum, float *const *mean, size_t count) {
-    for (int64_t t = 0; t < source->shape.frames; t++) {
-        PTIE_TRY(ptie_source_read(source, t, mean));
+int64_t ptie_source_sample(const ptie_source *source, int64_t i, int64_t samples) {
+    const int64_t last = source->shape.frames - 1, steps = samples > 1 ? samples - 1 : 1;
+    return last / steps * i + last % steps * i / steps;
+}
+
+static ptie_status add_frames(ptie_source *source, double *sum, float *const *mean, size_t count, int64_t samples) {
+    for (int64_t t = 0; t < samples; t++) {
+        PTIE_TRY(ptie_source_read(source, ptie_source_sample(source, t, samples), mean));
         for (int32_t k = 0; k < source->shape.images; k++)
             for (size_t i = 0; i < count; i++) sum[(size_t)k * count + i] += (double)mean[k][i];
     }
     return PTIE_OK;
 }
 
-static ptie_status average(ptie_source *source, const ptie_source_shape *like, float *const *mean, const char *path) {
-    const ptie_source_shape *shape = &source->shape;
-    const size_t count = (size_t)shape->width_px * (size_t)shape->height_px, images = (size_t)shape->images;
+ptie_status ptie_source_average(ptie_source *source, float *const *mean, int64_t most) {
+    const size_t count = (size_t)source->shape.width_px * (size_t)source->shape.height_px;
+    const size_t images = (size_t)source->shape.images;
+    const int64_t samples = most < source->shape.frames ? most : source->shape.frames;
     double *sum;
-    if (shape->width_px != like->width_px || shape->height_px != like->height_px)
-        return PTIE_FAIL(PTIE_ESIZE, "%s: frame size differs from the recording's (expected %d x %d px, found "
-                                     "%d x %d)", path, like->width_px, like->height_px, shape->width_px,
-                         shape->height_px);
-    PTIE_TRY(ptie_alloc_status(&sum, images * count, sizeof *sum, path));
-    ptie_status status = add_frames(source, sum, mean, count);
+    PTIE_TRY(ptie_alloc_status(&sum, images * count, sizeof *sum, source->path[0]));
+    ptie_status status = add_frames(source, sum, mean, count, samples);
     for (size_t k = 0; k < images && status == PTIE_OK; k++)
-        for (size_t i = 0; i < count; i++) mean[k][i] = (float)(sum[k * count + i] / (double)shape->frames);
+        for (size_t i = 0; i < count; i++) mean[k][i] = (float)(sum[k * count + i] / (double)samples);
     ptie_free(sum);
     return status;
+}
+
+/* Still recordings are as large as those they belong to. */
+static ptie_status check_like(const ptie_source *source, const ptie_source_shape *like, const char *path) {
+    const ptie_source_shape *shape = &source->shape;
+    if (shape->width_px == like->width_px && shape->height_px == like->height_px) return PTIE_OK;
+    return PTIE_FAIL(PTIE_ESIZE, "%s: frame size differs from the recording's (expected %d x %d px, found %d x %d)",
+                     path, like->width_px, like->height_px, shape->width_px, shape->height_px);
 }
 
 ptie_status ptie_source_mean(float *const *mean, const ptie_source_shape *like, const ptie_rig *rig,
                              const char *path) {
     ptie_source *source;
     PTIE_TRY(open_source(&source, &(ptie_run_params){.rig = rig, .recording = path}, true));
-    ptie_status status = average(source, like, mean, path);
+    ptie_status status = check_like(source, like, path);
+    if (status == PTIE_OK) status = ptie_source_average(source, mean, INT64_MAX);
     ptie_source_close(source);
     return status;
 }
