@@ -163,6 +163,7 @@ static void describe_planes(facts *f, const ptie_rig *rig) {
 static void describe_rig(facts *f, const ptie_rig *rig) {
     static const char *const layouts[] = {"separate", "mosaic", "side-by-side", "top-bottom", "quadrants"};
     static const char *const polarities[] = {"negative", "auto", "positive"};
+    static const char *const methods[] = {"direct", "max-intensity", "two-poisson", "iterative-dct", "us-tie"};
     add_text(f, "kind", "rig");
     add_quantity(f, "wavelength", rig->wavelength_m, PTIE_LENGTH);
     add_quantity(f, "pixel", rig->pixel_m, PTIE_LENGTH);
@@ -174,7 +175,9 @@ static void describe_rig(facts *f, const ptie_rig *rig) {
     add_text(f, "polarity", "%s", polarities[rig->polarity + 1]);
     add_number(f, "binning", rig->binning, "%d", rig->binning);
     add_text(f, "boundary", "%s", rig->boundary == PTIE_PERIODIC ? "periodic" : "mirror");
+    add_text(f, "method", "%s", methods[rig->method]);
     if (rig->cutoff_m > 0) add_quantity(f, "cutoff", rig->cutoff_m, PTIE_LENGTH);
+    if (rig->cutoff_m < 0) add_text(f, "cutoff", "%s", rig->cutoff_m == PTIE_CUTOFF_AUTO ? "auto" : "l-curve");
     if (rig->frame_rate_hz > 0) add_quantity(f, "frame rate", rig->frame_rate_hz, PTIE_RATE);
 }
 

@@ -20,6 +20,10 @@ typedef enum ptie_background {
     PTIE_BACKGROUND_ZERNIKE = 2 /* low orders */
 } ptie_background;
 
+/* ptie_rig.cutoff_m in place of a length: chosen from the recording, as PTIE_CUTOFF_NOISE and PTIE_CUTOFF_L_CURVE do. */
+#define PTIE_CUTOFF_AUTO (-1.0)
+#define PTIE_CUTOFF_CORNER (-2.0)
+
 typedef struct ptie_plane {
     bool used;
     double defocus_m;           /* z, |z| <= 1e3 */
@@ -60,7 +64,9 @@ typedef struct ptie_rig {
     double read_noise_electrons;
 
     ptie_boundary boundary; /* default PTIE_MIRROR */
-    double cutoff_m;        /* Tikhonov cut-off period of the solver, 0 = off */
+    ptie_solver_method method; /* default PTIE_SOLVE_DIRECT */
+    int32_t max_iterations; /* of an iterating method, default 100 */
+    double cutoff_m;        /* Tikhonov cut-off period of the solver, 0 = off; or PTIE_CUTOFF_AUTO, PTIE_CUTOFF_CORNER */
     int32_t binning;        /* average n x n pixels before solving, default 1 */
     bool zero_border;       /* pin the mean: median of the frame's border = 0, default true */
 

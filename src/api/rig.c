@@ -50,7 +50,9 @@ static ptie_status check_numbers(const ptie_rig *rig, const char *where) {
     PTIE_TRY(ptie_check_positive(rig->wavelength_m, where, "wavelength_m"));
     PTIE_TRY(ptie_check_positive(rig->pixel_m, where, "pixel_m"));
     PTIE_TRY(ptie_check_number(rig->mask_below, 0, 1, where, "mask_below"));
-    PTIE_TRY(ptie_check_number(rig->cutoff_m, 0, 1e6, where, "cutoff_m"));
+    if (rig->cutoff_m != PTIE_CUTOFF_AUTO && rig->cutoff_m != PTIE_CUTOFF_CORNER)
+        PTIE_TRY(ptie_check_number(rig->cutoff_m, 0, 1e6, where, "cutoff_m"));
+    PTIE_TRY(ptie_check_integer(rig->max_iterations, 1, 100000, where, "max_iterations"));
     PTIE_TRY(ptie_check_integer(rig->still_first, 0, rig->still_end, where, "still_first"));
     PTIE_TRY(ptie_check_integer(rig->binning, 1, 64, where, "binning"));
     PTIE_TRY(ptie_check_integer(rig->roi_x, 0, 32767, where, "roi_x"));
@@ -62,6 +64,7 @@ static ptie_status check_choices(const ptie_rig *rig, const char *where) {
     PTIE_TRY(ptie_check_integer((int64_t)rig->layout, 0, PTIE_LAYOUT_QUADRANTS, where, "layout"));
     PTIE_TRY(ptie_check_integer((int64_t)rig->demosaic, 0, PTIE_DEMOSAIC_FOURIER, where, "demosaic"));
     PTIE_TRY(ptie_check_integer((int64_t)rig->background, 0, PTIE_BACKGROUND_ZERNIKE, where, "background"));
+    PTIE_TRY(ptie_check_integer((int64_t)rig->method, PTIE_SOLVE_DIRECT, PTIE_SOLVE_US_TIE, where, "method"));
     return ptie_check_integer((int64_t)rig->boundary, PTIE_PERIODIC, PTIE_MIRROR, where, "boundary");
 }
 

@@ -64,7 +64,7 @@ static ptie_status prepare(pipeline *p, const ptie_bench *bench) {
     PTIE_TRY(ptie_folder_create(&p->folder));
     PTIE_TRY(ptie_bench_model(&p->model));
     PTIE_TRY(simulate(p, 1));
-    PTIE_TRY(ptie_frame_plan_create(&p->plan, p->engine, &p->rig, p->model, PTIE_BENCH_SIDE,
+    PTIE_TRY(ptie_frame_plan_create(&p->plan, p->engine, &p->rig, NULL, p->model, PTIE_BENCH_SIDE,
                                     PTIE_BENCH_SIDE, NULL));
     PTIE_TRY(ptie_frames_create(&p->frames, bench, PTIE_BENCH_SIDE));
     return ptie_frames_add_scratch(&p->frames, bench, p->frames.pixels * sizeof(float));

@@ -69,8 +69,9 @@ ptie_solver_params ptie_rig_solver(const ptie_rig *rig, int32_t width_px, int32_
         .pixel_m = ptie_rig_pixel_m(rig),
         .wavelength_m = rig->wavelength_m,
         .boundary = rig->boundary,
-        .cutoff_m = rig->cutoff_m,
-        .max_iterations = 100,
+        .method = rig->method,
+        .cutoff_m = rig->cutoff_m > 0 ? rig->cutoff_m : 0,
+        .max_iterations = rig->max_iterations,
     };
     p.plane_count = ptie_rig_planes(rig, role, p.z_m);
     return p;

@@ -27,7 +27,7 @@ ptie_status ptie_rig_check_planes(const ptie_rig *rig, const char *where);
 /* Of the planes and the phase: after de-mosaicking and binning. */
 double ptie_rig_pixel_m(const ptie_rig *rig);
 
-/* How planes of this size are solved. */
+/* How planes of this size are solved; without a cut-off where that is still to be chosen. */
 ptie_solver_params ptie_rig_solver(const ptie_rig *rig, int32_t width_px, int32_t height_px);
 
 #endif

@@ -18,6 +18,7 @@ static const char *const demosaic_names[] = {"none", "bilinear", "fourier", NULL
 static const char *const background_names[] = {"none", "plane", "zernike", NULL};
 static const char *const polarity_names[] = {"negative", "auto", "positive", NULL}; /* index - 1 */
 static const char *const boundary_names[] = {"periodic", "mirror", NULL};
+static const char *const method_names[] = {"direct", "max-intensity", "two-poisson", "iterative-dct", "us-tie", NULL};
 
 /* Planes in units of 'defocus'. */
 const double ptie_plane_steps[PTIE_ROLES] = {1, -1, 0, 2, -2};
@@ -52,6 +53,25 @@ static void print_rect(ptie_text *out, const void *field) {
     if (r->width_px > 0) ptie_text_append(out, "%d,%d,%d,%d", r->x_px, r->y_px, r->width_px, r->height_px);
 }
 
+/* double: "auto", "l-curve" or a length. */
+static const char *parse_cutoff(void *field, const char *text) {
+    double value = strcmp(text, "auto") == 0 ? PTIE_CUTOFF_AUTO : PTIE_CUTOFF_CORNER;
+    if (value != PTIE_CUTOFF_AUTO && strcmp(text, "l-curve") != 0 &&
+        (ptie_parse_quantity(text, PTIE_LENGTH, &value) || !(value >= 0 && value <= 1e3)))
+        return "a length such as 3 mm, 0, auto or l-curve";
+    memcpy(field, &value, sizeof value);
+    return NULL;
+}
+
+static void print_cutoff(ptie_text *out, const void *field) {
+    const double value = *(const double *)field;
+    char text[PTIE_QUANTITY_BYTES];
+    ptie_text_append(out, "%s", value == PTIE_CUTOFF_AUTO     ? "auto"
+                                : value == PTIE_CUTOFF_CORNER ? "l-curve"
+                                                              : ptie_print_quantity(text, value, PTIE_LENGTH));
+}
+
+static const ptie_ini_type cutoff_type = {parse_cutoff, print_cutoff};
 static const ptie_ini_type frames_type = {parse_frames, print_frames};
 static const ptie_ini_type rect_type = {parse_rect, print_rect};
 
@@ -132,7 +152,10 @@ const ptie_ini_key ptie_rig_keys[] = {
 
     KEY("solver", "binning", rig.binning, "averages n x n pixels", INTEGER(1, 64)),
     KEY("solver", "boundary", rig.boundary, "beyond the frame: mirror, periodic", CHOICE(boundary_names)),
-    KEY("solver", "cutoff", rig.cutoff_m, "period above which structures are damped; 0 = off", LENGTH(0, 1e3)),
+    KEY("solver", "method", rig.method, "direct; apertures, uneven light: iterative-dct, us-tie", CHOICE(method_names)),
+    KEY("solver", "iterations", rig.max_iterations, "at most, where the method iterates", INTEGER(1, 100000)),
+    KEY("solver", "cutoff", rig.cutoff_m, "period above which structures are damped; 0 = off, auto, l-curve",
+        OWN(cutoff_type)),
     KEY("solver", "zero_border", rig.zero_border, "the median at the frame's border is 0", BOOLEAN),
 
     KEY("flow", "polarity", polarity, "sign of the flow's phase: positive, negative (hot gas), auto",
@@ -145,7 +168,8 @@ const size_t ptie_rig_key_count = sizeof ptie_rig_keys / sizeof *ptie_rig_keys;
 
 void ptie_rig_defaults(ptie_rig *rig) {
     *rig = (ptie_rig){.struct_size = sizeof *rig, .wavelength_m = 532e-9, .demosaic = PTIE_DEMOSAIC_BILINEAR,
-                      .flat_field = true, .match_gain = true, .boundary = PTIE_MIRROR, .binning = 1,
+                      .flat_field = true, .match_gain = true, .boundary = PTIE_MIRROR, .max_iterations = 100,
+                      .binning = 1,
                       .zero_border = true};
     for (int i = 0; i < PTIE_ROLES; i++)
         rig->plane[i] = (ptie_plane){.defocus_m = 10e-3 * ptie_plane_steps[i], .gain = 1, .magnification = 1};

@@ -12,6 +12,7 @@
 #include "io/recording.h"
 #include "metrics/metrics.h"
 #include "run/average.h"
+#include "run/cutoff.h"
 #include "run/prepare.h"
 #include "run/reprojection.h"
 #include "run/result.h"
@@ -41,7 +42,9 @@ typedef struct desk {
 
 typedef struct run {
     const ptie_engine *engine;
-    const ptie_run_params *params;
+    const ptie_run_params *params; /* as given, but for the rig: */
+    ptie_run_params own_params;
+    ptie_rig own_rig; /* with the cut-off that was chosen */
     ptie_source *source;
     ptie_prepare *preparation;
     ptie_recording *truth; /* or NULL */
@@ -162,11 +165,22 @@ static ptie_status open_inputs(run *r) {
     return open_truth(r);
 }
 
+static ptie_status choose_cutoff(run *r) {
+    r->own_params = *r->params;
+    r->own_rig = *r->params->rig;
+    r->own_params.rig = &r->own_rig;
+    PTIE_TRY(ptie_run_cutoff(&r->own_rig.cutoff_m, r->params->rig, r->source, r->preparation,
+                             r->params->frames.first, r->frames, r->params->frames.step));
+    r->params = &r->own_params;
+    return PTIE_OK;
+}
+
 static ptie_status make_plans(run *r) {
+    PTIE_TRY(choose_cutoff(r));
     const ptie_run_params *p = r->params;
     const ptie_denoiser_params denoising = {.fast = p->fast, .all_threads = r->frames == 1};
-    PTIE_TRY(ptie_frame_plan_create(&r->plan, r->engine, p->rig, p->model, r->shape.width_px,
-                                    r->shape.height_px, &denoising));
+    PTIE_TRY(ptie_frame_plan_create(&r->plan, r->engine, p->rig, ptie_prepare_mask(r->preparation), p->model,
+                                    r->shape.width_px, r->shape.height_px, &denoising));
     return ptie_reprojection_create(&r->reprojection, p->rig, r->shape.width_px, r->shape.height_px,
                                     ptie_pool_threads(r->engine->pool));
 }
@@ -230,6 +244,18 @@ static ptie_status label_what_is_given(run *r) {
                                     r->params->background);
 }
 
+/* Where the phase is made of light that every plane saw, and none that came from elsewhere. */
+static ptie_status write_trusted(run *r) {
+    const uint8_t *seen = ptie_prepare_seen(r->preparation);
+    uint8_t *trusted;
+    PTIE_TRY(ptie_alloc_status(&trusted, r->pixels, 1, "run"));
+    ptie_frame_trusted(r->plan, trusted);
+    for (size_t i = 0; seen && i < r->pixels; i++) trusted[i] &= seen[i];
+    const ptie_status status = ptie_result_write(r->result, PTIE_RESULT_TRUSTED, trusted);
+    ptie_free(trusted);
+    return status;
+}
+
 static ptie_status begin(run *r) {
     PTIE_TRY(check_outputs(r->params));
     PTIE_TRY(open_inputs(r));
@@ -237,6 +263,7 @@ static ptie_status begin(run *r) {
     PTIE_TRY(allocate(r));
     PTIE_TRY(label_what_is_given(r)); /* before the work: they may lie outside the frame */
     PTIE_TRY(open_result(r));
+    PTIE_TRY(write_trusted(r));
     PTIE_TRY(ptie_table_open(&r->table, r->params));
     return r->labelled ? ptie_result_write(r->result, PTIE_RESULT_REGIONS, r->labels) : PTIE_OK;
 }

@@ -9,6 +9,7 @@
 
 struct ptie_frame_plan {
     int32_t width, height;
+    const uint8_t *mask;
     bool zero_border;
     int32_t polarity;
     ptie_solver *solver;
@@ -28,7 +29,8 @@ static size_t scratch_bytes(const ptie_frame_plan *plan) {
 
 static ptie_status build(ptie_frame_plan *plan, const ptie_engine *engine, const ptie_rig *rig,
                          const ptie_model *model, const ptie_denoiser_params *params) {
-    const ptie_solver_params solver = ptie_rig_solver(rig, plan->width, plan->height);
+    ptie_solver_params solver = ptie_rig_solver(rig, plan->width, plan->height);
+    solver.mask = plan->mask;
     PTIE_TRY(ptie_tie_plan(&plan->solver, &solver));
     plan->noise_rad = ptie_tie_noise_rad(plan->solver, 1);
     if (model)
@@ -41,13 +43,14 @@ static ptie_status build(ptie_frame_plan *plan, const ptie_engine *engine, const
 }
 
 ptie_status ptie_frame_plan_create(ptie_frame_plan **out, const ptie_engine *engine,
-                                   const ptie_rig *rig, const ptie_model *model, int32_t width_px,
-                                   int32_t height_px, const ptie_denoiser_params *params) {
+                                   const ptie_rig *rig, const uint8_t *mask, const ptie_model *model,
+                                   int32_t width_px, int32_t height_px, const ptie_denoiser_params *params) {
     *out = NULL;
     ptie_frame_plan *plan;
     PTIE_TRY(ptie_alloc_status(&plan, 1, sizeof *plan, "run"));
     plan->width = width_px;
     plan->height = height_px;
+    plan->mask = mask;
     plan->zero_border = rig->zero_border;
     plan->polarity = rig->polarity;
     plan->workers = ptie_pool_threads(engine->pool);
@@ -69,20 +72,25 @@ void ptie_frame_plan_free(ptie_frame_plan *plan) {
 }
 
 /* The mean of a TIE phase is not measured; the level around the flow becomes 0. */
-static void pin_border(float *phase, int32_t width, int32_t height, float *border) {
-    float level = (float)ptie_image_border_median(phase, width, height, border);
-    for (ptrdiff_t i = 0; i < (ptrdiff_t)width * height; i++) phase[i] -= level;
+static void pin_border(const ptie_frame_plan *plan, float *phase, float *border) {
+    const float level = (float)ptie_image_border_median(phase, plan->width, plan->height, border);
+    for (ptrdiff_t i = 0; i < (ptrdiff_t)plan->width * plan->height; i++)
+        if (!plan->mask || plan->mask[i]) phase[i] -= level;
 }
 
 ptie_status ptie_frame_solve(const ptie_frame_plan *plan, int32_t worker, float *phase, float *denoised,
                              const float *const *planes) {
     void *scratch = plan->scratch[worker];
     PTIE_TRY(ptie_tie_solve(plan->solver, phase, planes, scratch, NULL));
-    if (plan->zero_border) pin_border(phase, plan->width, plan->height, scratch);
+    if (plan->zero_border) pin_border(plan, phase, scratch);
     if (!plan->denoiser) return PTIE_OK;
     return ptie_nn_denoise_rad(plan->denoiser, denoised, phase, plan->polarity, scratch);
 }
 
 double ptie_frame_noise_rad(const ptie_frame_plan *plan, double sigma) {
     return sigma * plan->noise_rad;
+}
+
+void ptie_frame_trusted(const ptie_frame_plan *plan, uint8_t *trusted) {
+    ptie_tie_border(plan->solver, trusted);
 }

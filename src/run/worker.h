@@ -7,12 +7,12 @@
 
 #include "kernel/engine.h"
 
-/* params: how the model runs, NULL: the defaults.  With all threads, ptie_frame_solve takes the pool. */
+/* mask: what is light, or NULL; lives as long as the plan.  params: how the model runs, NULL: the defaults.  With all threads, ptie_frame_solve takes the pool. */
 typedef struct ptie_frame_plan ptie_frame_plan;
 
 ptie_status ptie_frame_plan_create(ptie_frame_plan **out, const ptie_engine *engine,
-                                   const ptie_rig *rig, const ptie_model *model, int32_t width_px,
-                                   int32_t height_px, const ptie_denoiser_params *params);
+                                   const ptie_rig *rig, const uint8_t *mask, const ptie_model *model,
+                                   int32_t width_px, int32_t height_px, const ptie_denoiser_params *params);
 void ptie_frame_plan_free(ptie_frame_plan *plan); /* NULL is fine */
 
 /* phase, denoised (out; denoised untouched without a model) from the planes in the order of ptie_rig_solver.
@@ -22,5 +22,8 @@ ptie_status ptie_frame_solve(const ptie_frame_plan *plan, int32_t worker, float 
 
 /* Standard deviation of the phase that white noise of relative deviation sigma in each plane causes. */
 double ptie_frame_noise_rad(const ptie_frame_plan *plan, double sigma);
+
+/* trusted (out): 1 where the phase is made of measured light only, ptie_solver_border. */
+void ptie_frame_trusted(const ptie_frame_plan *plan, uint8_t *trusted);
 
 #endif
