@@ -15,8 +15,8 @@ static ptie_status check_image(const void *image, const char *name, int32_t widt
     return ptie_check_integer(height, 1, 32768, where, "height_px");
 }
 
-ptie_status ptie_flat_gain(float *gain, const float *reference, const uint8_t *mask, int32_t width_px,
-                           int32_t height_px, double floor) {
+ptie_status ptie_flat_gain(float *gain, const float *reference, const uint8_t *mask,
+                           int32_t width_px, int32_t height_px, double floor) {
     static const char where[] = "ptie_flat_gain";
     PTIE_TRY(ptie_check_pointer(gain, where, "gain"));
     PTIE_TRY(check_image(reference, "reference", width_px, height_px, where));
@@ -27,8 +27,10 @@ ptie_status ptie_flat_gain(float *gain, const float *reference, const uint8_t *m
 static ptie_status check_splitter(const ptie_splitter_params *p, const char *where) {
     PTIE_TRY(ptie_check_integer(p->width_px, 2, 32768, where, "width_px"));
     PTIE_TRY(ptie_check_integer(p->height_px, 2, 32768, where, "height_px"));
-    PTIE_TRY(ptie_check_integer(p->layout, PTIE_LAYOUT_SEPARATE, PTIE_LAYOUT_QUADRANTS, where, "layout"));
-    PTIE_TRY(ptie_check_integer(p->demosaic, PTIE_DEMOSAIC_NONE, PTIE_DEMOSAIC_FOURIER, where, "demosaic"));
+    PTIE_TRY(ptie_check_integer(p->layout, PTIE_LAYOUT_SEPARATE, PTIE_LAYOUT_QUADRANTS, where,
+                                "layout"));
+    PTIE_TRY(ptie_check_integer(p->demosaic, PTIE_DEMOSAIC_NONE, PTIE_DEMOSAIC_FOURIER, where,
+                                "demosaic"));
     PTIE_TRY(ptie_check_integer(p->roi_x_px, 0, 32768, where, "roi_x_px"));
     return ptie_check_integer(p->roi_y_px, 0, 32768, where, "roi_y_px");
 }
@@ -48,8 +50,8 @@ size_t ptie_splitter_scratch_bytes(const ptie_splitter *splitter) {
     return splitter ? ptie_prep_splitter_scratch(splitter) : 0;
 }
 
-ptie_status ptie_splitter_run(const ptie_splitter *splitter, float *const *channel, const float *image,
-                              void *scratch) {
+ptie_status ptie_splitter_run(const ptie_splitter *splitter, float *const *channel,
+                              const float *image, void *scratch) {
     static const char where[] = "ptie_splitter_run";
     PTIE_TRY(ptie_check_pointer(splitter, where, "splitter"));
     PTIE_TRY(ptie_check_pointer(channel, where, "channel"));
@@ -59,7 +61,8 @@ ptie_status ptie_splitter_run(const ptie_splitter *splitter, float *const *chann
     return PTIE_OK;
 }
 
-ptie_status ptie_resampler_create(ptie_resampler **out, int32_t width_px, int32_t height_px, ptie_similarity place) {
+ptie_status ptie_resampler_create(ptie_resampler **out, int32_t width_px, int32_t height_px,
+                                  ptie_similarity place) {
     static const char where[] = "ptie_resampler_create";
     PTIE_TRY(ptie_check_pointer(out, where, "out"));
     *out = NULL;
@@ -76,7 +79,8 @@ size_t ptie_resampler_scratch_bytes(const ptie_resampler *resampler) {
     return resampler ? ptie_prep_resampler_scratch(resampler) : 0;
 }
 
-ptie_status ptie_resampler_run(const ptie_resampler *resampler, float *out, const float *plane, void *scratch) {
+ptie_status ptie_resampler_run(const ptie_resampler *resampler, float *out, const float *plane,
+                               void *scratch) {
     static const char where[] = "ptie_resampler_run";
     PTIE_TRY(ptie_check_pointer(resampler, where, "resampler"));
     PTIE_TRY(ptie_check_pointer(out, where, "out"));
@@ -86,8 +90,8 @@ ptie_status ptie_resampler_run(const ptie_resampler *resampler, float *out, cons
     return PTIE_OK;
 }
 
-ptie_status ptie_register(ptie_registration *out, const float *fixed, const float *moving, const uint8_t *mask,
-                          int32_t width_px, int32_t height_px) {
+ptie_status ptie_register(ptie_registration *out, const float *fixed, const float *moving,
+                          const uint8_t *mask, int32_t width_px, int32_t height_px) {
     static const char where[] = "ptie_register";
     PTIE_TRY(ptie_check_pointer(out, where, "out"));
     PTIE_TRY(ptie_check_pointer(fixed, where, "fixed"));
@@ -97,8 +101,8 @@ ptie_status ptie_register(ptie_registration *out, const float *fixed, const floa
     return ptie_prep_register(out, fixed, moving, mask, width_px, height_px);
 }
 
-ptie_status ptie_opaque_mask(uint8_t *mask, const float *reference, int32_t width_px, int32_t height_px,
-                             double below, int32_t clean_px, int32_t margin_px) {
+ptie_status ptie_opaque_mask(uint8_t *mask, const float *reference, int32_t width_px,
+                             int32_t height_px, double below, int32_t clean_px, int32_t margin_px) {
     static const char where[] = "ptie_opaque_mask";
     PTIE_TRY(ptie_check_pointer(mask, where, "mask"));
     PTIE_TRY(check_image(reference, "reference", width_px, height_px, where));
@@ -116,7 +120,8 @@ static ptie_status check_surface(const ptie_surface_params *p, const char *where
     return ptie_check_number(p->reject, 1, 100, where, "reject");
 }
 
-ptie_status ptie_surface_create(ptie_surface **out, const ptie_surface_params *params, const uint8_t *mask) {
+ptie_status ptie_surface_create(ptie_surface **out, const ptie_surface_params *params,
+                                const uint8_t *mask) {
     static const char where[] = "ptie_surface_create";
     PTIE_TRY(ptie_check_pointer(out, where, "out"));
     *out = NULL;

@@ -15,7 +15,8 @@ double ptie_mosaic_imbalance(const float *image, int32_t width_px, int32_t heigh
     for (int32_t y = 0; y + 1 < height_px; y += 2) {
         const float *top = image + (ptrdiff_t)y * width_px, *bottom = top + width_px;
         for (int32_t x = 0; x + 1 < width_px; x += 2) {
-            const double a = (double)top[x] + (double)bottom[x + 1], b = (double)top[x + 1] + (double)bottom[x];
+            const double a = (double)top[x] + (double)bottom[x + 1],
+                         b = (double)top[x + 1] + (double)bottom[x];
             off += fabs(a - b);
             all += a + b;
         }
@@ -23,7 +24,8 @@ double ptie_mosaic_imbalance(const float *image, int32_t width_px, int32_t heigh
     return off / all;
 }
 
-double ptie_plane_spread(const float *const *plane, int32_t count, const uint8_t *mask, size_t pixels) {
+double ptie_plane_spread(const float *const *plane, int32_t count, const uint8_t *mask,
+                         size_t pixels) {
     double low = INFINITY, high = -INFINITY, sum = 0;
     for (int32_t i = 0; i < count; i++) {
         const double mean = ptie_masked_mean(plane[i], mask, pixels);
@@ -40,7 +42,8 @@ PTIE_CLONES size_t ptie_count_saturated(const float *image, size_t pixels, doubl
 }
 
 ptie_trend ptie_trend_of(const double *values, size_t count) {
-    const double n = (double)count, middle = (n - 1) / 2, spread = n * (n * n - 1) / 12; /* sum (i - middle)^2 */
+    const double n = (double)count, middle = (n - 1) / 2,
+                 spread = n * (n * n - 1) / 12; /* sum (i - middle)^2 */
     double sum = 0, slope = 0, squares = 0;
     for (size_t i = 0; i < count; i++) sum += values[i], slope += ((double)i - middle) * values[i];
     slope /= spread;

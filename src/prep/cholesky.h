@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* a (n, n), of which the lower triangle is read, becomes its factor there.  False, and nothing usable, if a is not
-   positive definite to 12 digits. */
+/* a (n, n), of which the lower triangle is read, becomes its factor there.  False, and nothing
+   usable, if a is not positive definite to 12 digits. */
 bool ptie_cholesky(double *a, int32_t n);
 
 /* x (in): the right-hand side; (out): the solution. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Masked pixels from what surrounds them, by pull and push (Gortler et al., SIGGRAPH 1996): means of the light at ever
- * coarser scales, then back, the coarser scale interpolated where a finer one has no light.  docs/math.md (P9). */
+/* Masked pixels from what surrounds them, by pull and push (Gortler et al., SIGGRAPH 1996): means
+ * of the light at ever coarser scales, then back, the coarser scale interpolated where a finer one
+ * has no light.  docs/math.md (P9). */
 #include "base/memory.h"
 #include "prep/prep.h"
 
@@ -54,7 +55,8 @@ static int32_t clamped(int32_t i, int32_t n) {
     return i < 0 ? 0 : i < n ? i : n - 1;
 }
 
-/* What is not known of `fine`: `coarse` interpolated linearly; its pixels' centres are a quarter off. */
+/* What is not known of `fine`: `coarse` interpolated linearly; its pixels' centres are a quarter
+ * off. */
 static void push(const level *fine, const uint8_t *fine_known, const level *coarse) {
     for (int32_t y = 0; y < fine->height; y++)
         for (int32_t x = 0; x < fine->width; x++) {
@@ -64,14 +66,18 @@ static void push(const level *fine, const uint8_t *fine_known, const level *coar
             const int32_t v = y / 2, v2 = clamped(y % 2 ? v + 1 : v - 1, coarse->height);
             const float *near = coarse->value + (ptrdiff_t)v * coarse->width;
             const float *far = coarse->value + (ptrdiff_t)v2 * coarse->width;
-            fine->value[i] = 0.75f * (0.75f * near[u] + 0.25f * near[u2]) + 0.25f * (0.75f * far[u] + 0.25f * far[u2]);
+            fine->value[i] = 0.75f * (0.75f * near[u] + 0.25f * near[u2]) +
+                             0.25f * (0.75f * far[u] + 0.25f * far[u2]);
         }
 }
 
-void ptie_fill_masked(float *image, const uint8_t *mask, int32_t width_px, int32_t height_px, void *scratch) {
+void ptie_fill_masked(float *image, const uint8_t *mask, int32_t width_px, int32_t height_px,
+                      void *scratch) {
     ptie_slicer slicer = {.base = scratch};
     level levels[LEVELS + 1] = {{width_px, height_px, image, NULL}};
     const int count = carve(levels + 1, &slicer, width_px, height_px);
-    for (int i = 1; i <= count; i++) pull(&levels[i], &levels[i - 1], i > 1 ? levels[i - 1].known : mask);
-    for (int i = count; i >= 1; i--) push(&levels[i - 1], i > 1 ? levels[i - 1].known : mask, &levels[i]);
+    for (int i = 1; i <= count; i++)
+        pull(&levels[i], &levels[i - 1], i > 1 ? levels[i - 1].known : mask);
+    for (int i = count; i >= 1; i--)
+        push(&levels[i - 1], i > 1 ? levels[i - 1].known : mask, &levels[i]);
 }

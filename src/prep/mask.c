@@ -6,13 +6,13 @@
 #include "prep/median.h"
 #include "prep/prep.h"
 
-ptie_status ptie_prep_opaque_mask(uint8_t *mask, const float *reference, int32_t width, int32_t height, double below,
-                                  int32_t clean, int32_t margin) {
+ptie_status ptie_prep_opaque_mask(uint8_t *mask, const float *reference, int32_t width,
+                                  int32_t height, double below, int32_t clean, int32_t margin) {
     const size_t pixels = (size_t)width * (size_t)height;
     uint8_t *work;
     PTIE_TRY(ptie_image_finite(reference, width, height, "reference"));
     PTIE_TRY(ptie_alloc_status(&work, pixels, 1, "mask"));
-    const double limit = below * ptie_median(reference, NULL, pixels);
+    const double limit = below * ptie_median(reference, pixels);
     for (size_t i = 0; i < pixels; i++) mask[i] = (double)reference[i] >= limit;
     ptie_mask_grow(mask, width, height, clean, 1, work); /* specks of darkness */
     ptie_mask_grow(mask, width, height, 2 * clean, 0, work);

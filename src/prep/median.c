@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Medians without sorting: the value of a rank is found bit by bit, from the highest, by counting how many values lie
- * below.  Exact, in place, and vectors count.  docs/math.md (P11). */
+/* Medians without sorting: the value of a rank is found bit by bit, from the highest, by counting
+ * how many values lie below.  Exact, in place, and vectors count.  docs/math.md (P11). */
 #include "prep/median.h"
 
 #include <string.h>
@@ -22,37 +22,36 @@ static float value_of(int32_t key) {
     return value;
 }
 
-/* The next trial: `key` with `bit` set, in the order of unsigned numbers that begins at INT32_MIN. */
+/* The next trial: `key` with `bit` set, in the order of unsigned numbers that begins at INT32_MIN.
+ */
 PTIE_INLINE int32_t with_bit(int32_t key, int bit) {
     return (int32_t)((uint32_t)key ^ (uint32_t)1 << bit);
 }
 
-PTIE_CLONES static size_t count_below(const float *values, const uint8_t *mask, size_t count, int32_t key) {
-    size_t below = 0;
-    for (size_t i = 0; i < count; i++) below += (size_t)((key_of(values[i]) < key) & (!mask || mask[i]));
+PTIE_CLONES static size_t count_below(const float *values, size_t count, int32_t key) {
+    uint32_t below = 0;
+    for (size_t i = 0; i < count; i++) below += key_of(values[i]) < key;
     return below;
 }
 
-static int32_t next_above(const float *values, const uint8_t *mask, size_t count, int32_t key) {
+PTIE_CLONES static int32_t next_above(const float *values, size_t count, int32_t key) {
     int32_t next = INT32_MAX;
     for (size_t i = 0; i < count; i++) {
         const int32_t k = key_of(values[i]);
-        if (k > key && k < next && (!mask || mask[i])) next = k;
+        next = k > key && k < next ? k : next;
     }
     return next;
 }
 
-double ptie_median(const float *values, const uint8_t *mask, size_t count) {
-    size_t used = 0;
-    for (size_t i = 0; i < count; i++) used += !mask || mask[i];
+double ptie_median(const float *values, size_t count) {
     int32_t low = INT32_MIN;
     for (int bit = 31; bit >= 0; bit--) {
         const int32_t trial = with_bit(low, bit);
-        if (count_below(values, mask, count, trial) <= (used - 1) / 2) low = trial;
+        if (count_below(values, count, trial) <= (count - 1) / 2) low = trial;
     }
     int32_t high = low;
-    if (used % 2 == 0 && count_below(values, mask, count, low + 1) <= used / 2)
-        high = next_above(values, mask, count, low);
+    if (count % 2 == 0 && count_below(values, count, low + 1) <= count / 2)
+        high = next_above(values, count, low);
     return ((double)value_of(low) + (double)value_of(high)) / 2;
 }
 
@@ -60,7 +59,8 @@ enum { BLOCK = 64 }; /* pixels whose frames stay in the cache */
 
 /* below (out): frames whose pixel lies below its key; n <= BLOCK pixels. */
 PTIE_CLONES static void count_frames(int32_t *restrict below, const int32_t *restrict key,
-                                     const float *restrict stack, int32_t frames, size_t stride, int32_t n) {
+                                     const float *restrict stack, int32_t frames, size_t stride,
+                                     int32_t n) {
     for (int32_t i = 0; i < n; i++) below[i] = 0;
     for (int32_t t = 0; t < frames; t++) {
         const float *restrict row = stack + (size_t)t * stride;
@@ -69,8 +69,8 @@ PTIE_CLONES static void count_frames(int32_t *restrict below, const int32_t *res
 }
 
 /* key (in): of the lower of the two middle frames; (out): of the upper. */
-PTIE_CLONES static void raise(int32_t *restrict key, const float *restrict stack, int32_t frames, size_t stride,
-                              int32_t n) {
+PTIE_CLONES static void raise(int32_t *restrict key, const float *restrict stack, int32_t frames,
+                              size_t stride, int32_t n) {
     int32_t upto[BLOCK] = {0}, next[BLOCK];
     for (int32_t i = 0; i < n; i++) next[i] = INT32_MAX;
     for (int32_t t = 0; t < frames; t++) {
@@ -84,7 +84,8 @@ PTIE_CLONES static void raise(int32_t *restrict key, const float *restrict stack
     for (int32_t i = 0; i < n; i++) key[i] = upto[i] > frames / 2 ? key[i] : next[i];
 }
 
-static void median_block(float *median, const float *stack, int32_t frames, size_t stride, int32_t n) {
+static void median_block(float *median, const float *stack, int32_t frames, size_t stride,
+                         int32_t n) {
     int32_t low[BLOCK], high[BLOCK], below[BLOCK];
     for (int32_t i = 0; i < n; i++) low[i] = INT32_MIN;
     for (int bit = 31; bit >= 0; bit--) {
@@ -97,7 +98,9 @@ static void median_block(float *median, const float *stack, int32_t frames, size
     for (int32_t i = 0; i < n; i++) median[i] = (value_of(low[i]) + value_of(high[i])) / 2;
 }
 
-void ptie_temporal_median(float *median, const float *stack, int32_t frames, size_t stride, size_t pixels) {
+void ptie_temporal_median(float *median, const float *stack, int32_t frames, size_t stride,
+                          size_t pixels) {
     for (size_t i = 0; i < pixels; i += BLOCK)
-        median_block(median + i, stack + i, frames, stride, (int32_t)(pixels - i < BLOCK ? pixels - i : BLOCK));
+        median_block(median + i, stack + i, frames, stride,
+                     (int32_t)(pixels - i < BLOCK ? pixels - i : BLOCK));
 }

@@ -5,8 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Median of the values whose mask is not 0 (NULL: all); finite values, at least one of them.  Of an even number
-   the mean of the middle two. */
-double ptie_median(const float *values, const uint8_t *mask, size_t count);
+/* Of finite values, 1..2^31 of them; of an even number the mean of the middle two. */
+double ptie_median(const float *values, size_t count);
 
 #endif

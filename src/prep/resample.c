@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Along a row of the grid the source moves by nearly one pixel per pixel: a row falls into a few runs within
- * which the coefficients are neighbours and only the fractions change.  The plan keeps the runs. */
+/* Along a row of the grid the source moves by nearly one pixel per pixel: a row falls into a few
+ * runs within which the coefficients are neighbours and only the fractions change.  The plan keeps
+ * the runs. */
 #include "prep/resample.h"
 
 #include <math.h>
@@ -16,9 +17,9 @@ typedef struct run {
 
 struct ptie_resampler {
     int32_t width, height, margin;
-    double centre_x, centre_y;               /* where the grid's centre is found */
-    double scale_cos, scale_sin;             /* magnification times cos and sin of the rotation */
-    float step_x, step_y;                    /* of the fractions, per pixel */
+    double centre_x, centre_y;   /* where the grid's centre is found */
+    double scale_cos, scale_sin; /* magnification times cos and sin of the rotation */
+    float step_x, step_y;        /* of the fractions, per pixel */
     run *runs;
     size_t *first; /* run of each row, and the number of all */
 };
@@ -34,12 +35,14 @@ static point source_of(const ptie_resampler *r, int32_t x, int32_t y) {
                    r->centre_y + r->scale_sin * u + r->scale_cos * v};
 }
 
-/* How far the source leaves the frame, at the corners where it is farthest; and room for the taps. */
+/* How far the source leaves the frame, at the corners where it is farthest; and room for the taps.
+ */
 static double excursion(const ptie_resampler *r) {
     double most = 0;
     for (int corner = 0; corner < 4; corner++) {
         const point p = source_of(r, corner % 2 ? r->width - 1 : 0, corner / 2 ? r->height - 1 : 0);
-        most = fmax(most, fmax(fmax(-p.x, p.x - (r->width - 1)), fmax(-p.y, p.y - (r->height - 1))));
+        most =
+            fmax(most, fmax(fmax(-p.x, p.x - (r->width - 1)), fmax(-p.y, p.y - (r->height - 1))));
     }
     return ceil(most) + 2;
 }
@@ -51,7 +54,8 @@ static run run_at(const ptie_resampler *r, int32_t x, int32_t y) {
     return (run){.x = x,
                  .fraction_x = (float)(p.x - column),
                  .fraction_y = (float)(p.y - row),
-                 .offset = ((ptrdiff_t)row - 1 + r->margin) * pitch + (ptrdiff_t)column - 1 + r->margin};
+                 .offset =
+                     ((ptrdiff_t)row - 1 + r->margin) * pitch + (ptrdiff_t)column - 1 + r->margin};
 }
 
 /* Runs of row y, written to `runs` unless NULL; their number. */
@@ -77,7 +81,8 @@ static ptie_status trace(ptie_resampler *r) {
     return PTIE_OK;
 }
 
-ptie_status ptie_prep_resampler(ptie_resampler **out, int32_t width, int32_t height, ptie_similarity where) {
+ptie_status ptie_prep_resampler(ptie_resampler **out, int32_t width, int32_t height,
+                                ptie_similarity where) {
     *out = NULL;
     const ptie_resampler plan = {.width = width,
                                  .height = height,
@@ -88,9 +93,11 @@ ptie_status ptie_prep_resampler(ptie_resampler **out, int32_t width, int32_t hei
     const double margin = excursion(&plan);
     if (!(margin <= (width < height ? width : height)))
         return PTIE_FAIL(PTIE_EINVAL,
-                         "registration: plane leaves the frame (expected an overlap of %d x %d px, found shift %g, "
+                         "registration: plane leaves the frame (expected an overlap of %d x %d px, "
+                         "found shift %g, "
                          "%g px, magnification %g, rotation %g rad)",
-                         width, height, where.shift_x_px, where.shift_y_px, where.magnification, where.rotation_rad);
+                         width, height, where.shift_x_px, where.shift_y_px, where.magnification,
+                         where.rotation_rad);
     ptie_resampler *r;
     PTIE_TRY(ptie_alloc_status(&r, 1, sizeof *r, "resampler"));
     *r = plan;
@@ -117,7 +124,8 @@ typedef struct scratch {
 } scratch;
 
 static scratch carve(ptie_slicer *slicer, const ptie_resampler *r) {
-    const size_t columns = (size_t)(r->width + 2 * r->margin), rows = (size_t)(r->height + 2 * r->margin);
+    const size_t columns = (size_t)(r->width + 2 * r->margin),
+                 rows = (size_t)(r->height + 2 * r->margin);
     float *coefficient = ptie_slice(slicer, columns * rows, sizeof(float));
     return (scratch){coefficient, ptie_slice(slicer, ptie_spline_scratch(r->width), sizeof(float))};
 }
@@ -128,7 +136,8 @@ size_t ptie_prep_resampler_scratch(const ptie_resampler *r) {
     return slicer.used;
 }
 
-void ptie_prep_resample(const ptie_resampler *r, float *out, const float *plane, void *scratch_block) {
+void ptie_prep_resample(const ptie_resampler *r, float *out, const float *plane,
+                        void *scratch_block) {
     ptie_slicer slicer = {.base = scratch_block};
     const scratch s = carve(&slicer, r);
     const ptrdiff_t pitch = r->width + 2 * r->margin;
@@ -136,13 +145,14 @@ void ptie_prep_resample(const ptie_resampler *r, float *out, const float *plane,
     for (int32_t y = 0; y < r->height; y++)
         for (size_t i = r->first[y]; i < r->first[y + 1]; i++) {
             const run *n = &r->runs[i];
-            ptie_spline_run(out + (ptrdiff_t)y * r->width + n->x, s.coefficient + n->offset, pitch, n->count,
-                            n->fraction_x, n->fraction_y, r->step_x, r->step_y);
+            ptie_spline_run(out + (ptrdiff_t)y * r->width + n->x, s.coefficient + n->offset, pitch,
+                            n->count, n->fraction_x, n->fraction_y, r->step_x, r->step_y);
         }
 }
 
 void ptie_resampler_inside(const ptie_resampler *r, uint8_t *mask, double margin_px) {
-    const double left = margin_px, right = r->width - 1 - margin_px, bottom = r->height - 1 - margin_px;
+    const double left = margin_px, right = r->width - 1 - margin_px,
+                 bottom = r->height - 1 - margin_px;
     for (int32_t y = 0; y < r->height; y++)
         for (int32_t x = 0; x < r->width; x++) {
             const point p = source_of(r, x, y);

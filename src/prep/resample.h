@@ -7,8 +7,10 @@
 
 #include "base/status.h"
 
-ptie_status ptie_prep_resampler(ptie_resampler **out, int32_t width, int32_t height, ptie_similarity where);
+ptie_status ptie_prep_resampler(ptie_resampler **out, int32_t width, int32_t height,
+                                ptie_similarity where);
 size_t ptie_prep_resampler_scratch(const ptie_resampler *resampler);
-void ptie_prep_resample(const ptie_resampler *resampler, float *out, const float *plane, void *scratch);
+void ptie_prep_resample(const ptie_resampler *resampler, float *out, const float *plane,
+                        void *scratch);
 
 #endif

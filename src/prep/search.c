@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Where a registration begins: rotations and magnifications are tried, shifts are found by cross-correlation. */
+/* Where a registration begins: rotations and magnifications are tried, shifts are found by
+ * cross-correlation. */
 #include <math.h>
 #include <string.h>
 
@@ -8,8 +9,8 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* Steps within which the textures of the coarsest scale, 64 to 127 pixels, stay alike: 45 pixels from the centre they
-   are off by no more than 0.8 pixels. */
+/* Steps within which the textures of the coarsest scale, 64 to 127 pixels, stay alike: 45 pixels
+   from the centre they are off by no more than 0.8 pixels. */
 static const double TURN = 2 * 3.14159265358979323846 / 180, STRETCH = 0.04;
 enum { TURNS = 4, STRETCHES = 2 }; /* to either side of none */
 
@@ -38,7 +39,8 @@ static double energy(const float *image, size_t pixels) {
 /* spectrum *= conj(fixed) */
 static void correlate(float *spectrum, const float *fixed, size_t entries) {
     for (size_t i = 0; i < entries; i++) {
-        const float re = spectrum[2 * i], im = spectrum[2 * i + 1], a = fixed[2 * i], b = fixed[2 * i + 1];
+        const float re = spectrum[2 * i], im = spectrum[2 * i + 1], a = fixed[2 * i],
+                    b = fixed[2 * i + 1];
         spectrum[2 * i] = re * a + im * b;
         spectrum[2 * i + 1] = im * a - re * b;
     }
@@ -80,7 +82,8 @@ static ptie_status try_all(search *s, ptie_motion *best) {
     for (int turn = -TURNS; turn <= TURNS; turn++)
         for (int stretch = -STRETCHES; stretch <= STRETCHES; stretch++) {
             const double m = 1 + stretch * STRETCH;
-            PTIE_TRY(attempt(s, best, (ptie_motion){0, 0, m * cos(turn * TURN), m * sin(turn * TURN)}));
+            PTIE_TRY(
+                attempt(s, best, (ptie_motion){0, 0, m * cos(turn * TURN), m * sin(turn * TURN)}));
         }
     return PTIE_OK;
 }
@@ -90,9 +93,12 @@ ptie_status ptie_texture_search(ptie_texture *texture, ptie_motion *best) {
     search s = {.texture = texture};
     PTIE_TRY(ptie_fft_create(&s.fft, PTIE_FFT_REAL, texture->width, texture->height));
     ptie_status status;
-    PTIE_TRY_DONE(ptie_alloc_status(&s.image, ptie_fft_image_floats(s.fft), sizeof(float), "registration"));
-    PTIE_TRY_DONE(ptie_alloc_status(&s.spectrum, ptie_fft_spectrum_floats(s.fft), sizeof(float), "registration"));
-    PTIE_TRY_DONE(ptie_alloc_status(&s.fixed, ptie_fft_spectrum_floats(s.fft), sizeof(float), "registration"));
+    PTIE_TRY_DONE(
+        ptie_alloc_status(&s.image, ptie_fft_image_floats(s.fft), sizeof(float), "registration"));
+    PTIE_TRY_DONE(ptie_alloc_status(&s.spectrum, ptie_fft_spectrum_floats(s.fft), sizeof(float),
+                                    "registration"));
+    PTIE_TRY_DONE(ptie_alloc_status(&s.fixed, ptie_fft_spectrum_floats(s.fft), sizeof(float),
+                                    "registration"));
     status = try_all(&s, best);
 done:
     ptie_free(s.fixed);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The recursive filter of Unser, Aldroubi and Eden (IEEE Trans. Signal Process. 41, 821, 1993): pole sqrt(3) - 2, forwards
- * then backwards along each axis. */
+/* The recursive filter of Unser, Aldroubi and Eden (IEEE Trans. Signal Process. 41, 821, 1993):
+ * pole sqrt(3) - 2, forwards then backwards along each axis. */
 #include "prep/spline.h"
 
 #include <string.h>
@@ -49,17 +49,20 @@ PTIE_CLONES static void filter(float *line, int32_t n, ptrdiff_t step, int32_t c
 }
 
 /* Up to LANES rows, filtered side by side: lanes (width, LANES) is the block transposed. */
-PTIE_CLONES static void filter_rows(float *restrict out, ptrdiff_t pitch, const float *restrict image,
-                                    int32_t width, int32_t rows, float *restrict lanes) {
+PTIE_CLONES static void filter_rows(float *restrict out, ptrdiff_t pitch,
+                                    const float *restrict image, int32_t width, int32_t rows,
+                                    float *restrict lanes) {
     for (int32_t r = 0; r < rows; r++)
-        for (int32_t x = 0; x < width; x++) lanes[x * LANES + r] = GAIN * GAIN * image[(ptrdiff_t)r * width + x];
+        for (int32_t x = 0; x < width; x++)
+            lanes[x * LANES + r] = GAIN * GAIN * image[(ptrdiff_t)r * width + x];
     filter(lanes, width, LANES, LANES);
     for (int32_t r = 0; r < rows; r++)
         for (int32_t x = 0; x < width; x++) out[r * pitch + x] = lanes[x * LANES + r];
 }
 
 /* Coefficients of a mirrored image are mirrored. */
-static void mirror_edges(float *coefficient, ptrdiff_t pitch, int32_t width, int32_t height, int32_t margin) {
+static void mirror_edges(float *coefficient, ptrdiff_t pitch, int32_t width, int32_t height,
+                         int32_t margin) {
     for (int32_t y = 0; y < height; y++) {
         float *row = coefficient + (margin + y) * pitch + margin;
         for (int32_t x = 1; x <= margin; x++) {
@@ -75,8 +78,8 @@ static void mirror_edges(float *coefficient, ptrdiff_t pitch, int32_t width, int
     }
 }
 
-void ptie_spline_transform(float *coefficient, const float *image, int32_t width, int32_t height, int32_t margin,
-                           float *scratch) {
+void ptie_spline_transform(float *coefficient, const float *image, int32_t width, int32_t height,
+                           int32_t margin, float *scratch) {
     const ptrdiff_t pitch = width + 2 * margin;
     float *core = coefficient + margin * pitch + margin;
     for (int32_t y = 0; y < height; y += LANES) {
@@ -95,15 +98,16 @@ typedef struct weights {
 PTIE_INLINE weights weights_at(float t) {
     const float s = 1 - t, t2 = t * t, s2 = s * s;
     const float third = 2.0f / 3, sixth = 1.0f / 6;
-    return (weights){sixth * s2 * s, third - 0.5f * t2 * (1 + s), third - 0.5f * s2 * (1 + t), sixth * t2 * t};
+    return (weights){sixth * s2 * s, third - 0.5f * t2 * (1 + s), third - 0.5f * s2 * (1 + t),
+                     sixth * t2 * t};
 }
 
 PTIE_INLINE float row_at(const float *at, weights w) {
     return w.a * at[0] + w.b * at[1] + w.c * at[2] + w.d * at[3];
 }
 
-PTIE_CLONES void ptie_spline_run(float *restrict out, const float *restrict at, ptrdiff_t pitch, int32_t count,
-                                 float x, float y, float dx, float dy) {
+PTIE_CLONES void ptie_spline_run(float *restrict out, const float *restrict at, ptrdiff_t pitch,
+                                 int32_t count, float x, float y, float dx, float dy) {
     for (int32_t i = 0; i < count; i++) {
         const weights wx = weights_at(x + (float)i * dx), wy = weights_at(y + (float)i * dy);
         out[i] = wy.a * row_at(at + i, wx) + wy.b * row_at(at + pitch + i, wx) +

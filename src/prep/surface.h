@@ -7,7 +7,8 @@
 
 #include "base/status.h"
 
-ptie_status ptie_prep_surface(ptie_surface **out, const ptie_surface_params *params, const uint8_t *mask);
+ptie_status ptie_prep_surface(ptie_surface **out, const ptie_surface_params *params,
+                              const uint8_t *mask);
 size_t ptie_prep_surface_scratch(const ptie_surface *surface);
 ptie_status ptie_prep_surface_remove(const ptie_surface *surface, float *map, void *scratch);
 

@@ -18,8 +18,10 @@ static double band_pass(double k2, const void *context) {
 }
 
 /* Means of scale x scale pixels around the frame's centre, relative to the mean of all, less 1. */
-static void bin(float *out, const float *image, int32_t width, int32_t height, const ptie_texture *t) {
-    const int32_t left = (width - t->width * t->scale) / 2, top = (height - t->height * t->scale) / 2;
+static void bin(float *out, const float *image, int32_t width, int32_t height,
+                const ptie_texture *t) {
+    const int32_t left = (width - t->width * t->scale) / 2,
+                  top = (height - t->height * t->scale) / 2;
     const size_t pixels = (size_t)t->width * (size_t)t->height;
     double total = 0;
     for (int32_t y = 0; y < t->height; y++)
@@ -27,7 +29,8 @@ static void bin(float *out, const float *image, int32_t width, int32_t height, c
             double sum = 0;
             for (int32_t j = 0; j < t->scale; j++)
                 for (int32_t i = 0; i < t->scale; i++)
-                    sum += (double)image[(ptrdiff_t)(top + y * t->scale + j) * width + left + x * t->scale + i];
+                    sum += (double)image[(ptrdiff_t)(top + y * t->scale + j) * width + left +
+                                         x * t->scale + i];
             out[(ptrdiff_t)y * t->width + x] = (float)sum;
             total += sum;
         }
@@ -37,10 +40,12 @@ static void bin(float *out, const float *image, int32_t width, int32_t height, c
 
 /* A pixel of the scale counts if its middle is in the light, and it is away from the edges. */
 static void choose_used(const ptie_texture *t, const uint8_t *mask, int32_t width, int32_t height) {
-    const int32_t left = (width - t->width * t->scale) / 2, top = (height - t->height * t->scale) / 2;
+    const int32_t left = (width - t->width * t->scale) / 2,
+                  top = (height - t->height * t->scale) / 2;
     for (int32_t y = EDGE; y < t->height - EDGE; y++)
         for (int32_t x = EDGE; x < t->width - EDGE; x++) {
-            const int32_t u = left + x * t->scale + t->scale / 2, v = top + y * t->scale + t->scale / 2;
+            const int32_t u = left + x * t->scale + t->scale / 2,
+                          v = top + y * t->scale + t->scale / 2;
             t->use[(ptrdiff_t)y * t->width + x] = !mask || mask[(ptrdiff_t)v * width + u];
         }
 }
@@ -50,8 +55,10 @@ static ptie_status filter(ptie_texture *t) {
     float *response = NULL, *spectrum = NULL, *const images[] = {t->fixed, t->moving};
     PTIE_TRY(ptie_fft_create(&fft, PTIE_FFT_MIRROR, t->width, t->height));
     ptie_status status;
-    PTIE_TRY_DONE(ptie_alloc_status(&response, ptie_fft_filter_floats(fft), sizeof(float), "registration"));
-    PTIE_TRY_DONE(ptie_alloc_status(&spectrum, ptie_fft_spectrum_floats(fft), sizeof(float), "registration"));
+    PTIE_TRY_DONE(
+        ptie_alloc_status(&response, ptie_fft_filter_floats(fft), sizeof(float), "registration"));
+    PTIE_TRY_DONE(
+        ptie_alloc_status(&spectrum, ptie_fft_spectrum_floats(fft), sizeof(float), "registration"));
     ptie_fft_filter_fill(fft, response, 1, band_pass, NULL);
     for (int i = 0; i < 2; i++) {
         ptie_fft_forward(fft, spectrum, images[i]);
@@ -74,8 +81,8 @@ static ptie_status allocate(ptie_texture *t) {
     return ptie_alloc_status(&t->inside, pixels, 1, "registration");
 }
 
-ptie_status ptie_texture_create(ptie_texture *t, const float *fixed, const float *moving, const uint8_t *mask,
-                                int32_t width, int32_t height, int32_t scale) {
+ptie_status ptie_texture_create(ptie_texture *t, const float *fixed, const float *moving,
+                                const uint8_t *mask, int32_t width, int32_t height, int32_t scale) {
     *t = (ptie_texture){.scale = scale, .width = width / scale, .height = height / scale};
     ptie_status status = allocate(t);
     if (status == PTIE_OK) {
@@ -99,7 +106,8 @@ void ptie_texture_free(ptie_texture *t) {
 
 ptie_status ptie_texture_warp(ptie_texture *t, ptie_motion motion, bool choose) {
     const ptie_similarity place = {motion.shift_x / t->scale, motion.shift_y / t->scale,
-                                   hypot(motion.turn_re, motion.turn_im), atan2(motion.turn_im, motion.turn_re)};
+                                   hypot(motion.turn_re, motion.turn_im),
+                                   atan2(motion.turn_im, motion.turn_re)};
     ptie_resampler *resampler;
     void *scratch = NULL;
     PTIE_TRY(ptie_prep_resampler(&resampler, t->width, t->height, place));

@@ -20,15 +20,16 @@ typedef struct ptie_texture {
 } ptie_texture;
 
 /* Bins and filters both planes.  mask: 1 = light, or NULL. */
-ptie_status ptie_texture_create(ptie_texture *texture, const float *fixed, const float *moving, const uint8_t *mask,
-                                int32_t width, int32_t height, int32_t scale);
+ptie_status ptie_texture_create(ptie_texture *texture, const float *fixed, const float *moving,
+                                const uint8_t *mask, int32_t width, int32_t height, int32_t scale);
 void ptie_texture_free(ptie_texture *texture);
 
-/* Brings moving onto the grid of fixed: fills warped, and inside if `choose`.  The shift is in sensor pixels. */
+/* Brings moving onto the grid of fixed: fills warped, and inside if `choose`.  The shift is in
+ * sensor pixels. */
 ptie_status ptie_texture_warp(ptie_texture *texture, ptie_motion motion, bool choose);
 
-/* The best of a grid of rotations (up to 8 degrees) and magnifications (up to 8 %), each with its best shift by
-   cross-correlation. */
+/* The best of a grid of rotations (up to 8 degrees) and magnifications (up to 8 %), each with its
+   best shift by cross-correlation. */
 ptie_status ptie_texture_search(ptie_texture *texture, ptie_motion *best);
 
 #endif

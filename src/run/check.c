@@ -184,9 +184,11 @@ static ptie_status measure_noise(double *sigma, ptie_sampling *s) {
     if (status == PTIE_OK) status = ptie_sampling_planes(s, s->frame, PTIE_STEP_MIX);
     if (status == PTIE_OK) {
         const double ratio = mean / ptie_masked_mean(s->plane[0], plan->light, plan->pixels); /* of a flickering lamp */
+        size_t lit = 0;
         for (size_t i = 0; i < plan->pixels; i++)
-            difference[i] = fabsf(difference[i] - (float)ratio * s->plane[0][i]);
-        *sigma = ptie_median(difference, plan->light, plan->pixels) / (0.6745 * sqrt(2) * mean);
+            if (!plan->light || plan->light[i])
+                difference[lit++] = fabsf(difference[i] - (float)ratio * s->plane[0][i]);
+        *sigma = ptie_median(difference, lit) / (0.6745 * sqrt(2) * mean);
     }
     ptie_free(difference);
     return status;

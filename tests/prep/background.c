@@ -24,20 +24,33 @@ static ptie_status remove_surface(float *map, const uint8_t *mask, int32_t degre
     return status;
 }
 
-/* Zernike polynomials R cos m theta, R sin m theta over the frame's circle, up to radial order `order`. */
+/* Zernike polynomials R cos m theta, R sin m theta over the frame's circle, up to radial order
+ * `order`. */
 static double zernike(int i, double x, double y) {
     const double r2 = x * x + y * y;
-    const double z[] = {1, x, y, 2 * r2 - 1, x * x - y * y, 2 * x * y, (3 * r2 - 2) * x, (3 * r2 - 2) * y,
-                        x * x * x - 3 * x * y * y, 3 * x * x * y - y * y * y, 6 * r2 * r2 - 6 * r2 + 1,
-                        (4 * r2 - 3) * (x * x - y * y), (4 * r2 - 3) * 2 * x * y,
-                        x * x * x * x - 6 * x * x * y * y + y * y * y * y, 4 * x * y * (x * x - y * y)};
+    const double z[] = {1,
+                        x,
+                        y,
+                        2 * r2 - 1,
+                        x * x - y * y,
+                        2 * x * y,
+                        (3 * r2 - 2) * x,
+                        (3 * r2 - 2) * y,
+                        x * x * x - 3 * x * y * y,
+                        3 * x * x * y - y * y * y,
+                        6 * r2 * r2 - 6 * r2 + 1,
+                        (4 * r2 - 3) * (x * x - y * y),
+                        (4 * r2 - 3) * 2 * x * y,
+                        x * x * x * x - 6 * x * x * y * y + y * y * y * y,
+                        4 * x * y * (x * x - y * y)};
     return z[i];
 }
 static const int zernikes[] = {1, 3, 6, 10, 15}; /* up to each order */
 
 static void add_zernikes(float *map, int32_t order) {
     for (int p = 0; p < PIXELS; p++) {
-        const double x = (p % W - (W - 1) / 2.0) / (H / 2.0), y = (p / W - (H - 1) / 2.0) / (H / 2.0);
+        const double x = (p % W - (W - 1) / 2.0) / (H / 2.0),
+                     y = (p / W - (H - 1) / 2.0) / (H / 2.0);
         double sum = 0;
         for (int i = 0; i < zernikes[order]; i++) sum += cos(3 * i + 1) * zernike(i, x, y);
         map[p] += (float)sum;
@@ -86,7 +99,8 @@ static void the_masked_flow_stays(void **state) {
         assert_near((double)map[i], in_flow(i) ? 10 : 0, 2e-6 * (size + 10));
 }
 
-/* A flow on a quarter of the frame, not masked, over noise: rejected, so that the plane is that of the rest. */
+/* A flow on a quarter of the frame, not masked, over noise: rejected, so that the plane is that of
+ * the rest. */
 static void rejection_finds_the_flow_itself(void **state) {
     (void)state;
     static float map[PIXELS], noise[PIXELS];
@@ -106,7 +120,8 @@ static void rejection_finds_the_flow_itself(void **state) {
         *(rounds ? &robust : &plain) = sqrt(squares / count);
     }
     assert_true(plain > 0.3);
-    assert_near(robust, 0, 0.01); /* three terms from 4100 pixels of noise 0.1: 0.003; measured 0.003 */
+    assert_near(robust, 0,
+                0.01); /* three terms from 4100 pixels of noise 0.1: 0.003; measured 0.003 */
 }
 
 static void a_mask_must_leave_enough(void **state) {
@@ -117,7 +132,8 @@ static void a_mask_must_leave_enough(void **state) {
     ptie_surface_params_init(&p);
     p.width_px = W, p.height_px = H;
     ptie_surface *surface;
-    assert_fails(ptie_surface_create(&surface, &p, still), PTIE_EINVAL, "mask leaves too little to fit");
+    assert_fails(ptie_surface_create(&surface, &p, still), PTIE_EINVAL,
+                 "mask leaves too little to fit");
     assert_null(surface);
     p.degree = 5;
     assert_fails(ptie_surface_create(&surface, &p, NULL), PTIE_EINVAL, "degree is out of range");
@@ -135,7 +151,8 @@ static void medians_are_those_of_sorted_frames(void **state) {
     ptie_random random;
     ptie_random_init(&random, 10, PTIE_STREAM_TEXTURE, 0);
     ptie_random_normals(&random, stack, MOST * STRIDE);
-    for (int i = 0; i < MOST * STRIDE; i += 3) stack[i] = (float)(i % 5 - 2); /* ties, zeros, both signs */
+    for (int i = 0; i < MOST * STRIDE; i += 3)
+        stack[i] = (float)(i % 5 - 2); /* ties, zeros, both signs */
     stack[0] = -0.0f, stack[STRIDE] = 3e38f, stack[2 * STRIDE] = -3e38f, stack[3 * STRIDE] = 1e-42f;
     for (int32_t frames = 1; frames <= MOST; frames++) {
         ptie_temporal_median(median, stack, frames, STRIDE, N);

@@ -22,11 +22,13 @@ static void crossed_polarisers_share_the_light(void **state) {
     (void)state;
     enum { W = 41, H = 31 };
     static float image[W * H];
-    for (int32_t i = 0; i < W * H; i++) { /* partly polarised at an angle that changes from cell to cell */
+    for (int32_t i = 0; i < W * H;
+         i++) { /* partly polarised at an angle that changes from cell to cell */
         const int x = i % W, y = i / W;
         const double light = 100 + x / 2, angle = 0.3 * (x / 2) + 0.2 * (y / 2);
         static const double polariser[] = {90, 45, 135, 0};
-        const double turn = 2 * (angle - polariser[y % 2 * 2 + x % 2] * 3.14159265358979323846 / 180);
+        const double turn =
+            2 * (angle - polariser[y % 2 * 2 + x % 2] * 3.14159265358979323846 / 180);
         image[i] = (float)(light / 2 * (1 + 0.8 * cos(turn)));
     }
     assert_near(ptie_mosaic_imbalance(image, W, H), 0, 1e-6); /* rounding of floats */
@@ -38,7 +40,8 @@ static void planes_are_compared_over_the_light(void **state) {
     (void)state;
     const float a[] = {1, 3, 1000}, b[] = {2, 2.2f, -5}, c[] = {2, 1.8f, 0};
     const float *const planes[] = {a, b, c};
-    assert_near(ptie_plane_spread(planes, 3, (const uint8_t[]){1, 1, 0}, 3), 0.1, 1e-7); /* means 2, 2.1, 1.9 */
+    assert_near(ptie_plane_spread(planes, 3, (const uint8_t[]){1, 1, 0}, 3), 0.1,
+                1e-7); /* means 2, 2.1, 1.9 */
     assert_near(ptie_plane_spread(planes, 1, NULL, 3), 0, 0);
 }
 
@@ -60,7 +63,8 @@ static void a_trend_is_told_from_noise(void **state) {
     ptie_random_normals(&random, noise, N);
     for (int i = 0; i < N; i++) values[i] = 4 - 0.01 * i + 0.5 * (double)noise[i];
     const ptie_trend trend = ptie_trend_of(values, N);
-    const double deviation = 0.5 / sqrt(N * (N * N - 1.0) / 12); /* closed form, 400 residuals know it to 4 % */
+    const double deviation =
+        0.5 / sqrt(N * (N * N - 1.0) / 12); /* closed form, 400 residuals know it to 4 % */
     assert_near(trend.deviation, deviation, 0.15 * deviation);
     assert_near(trend.slope, -0.01, 4 * deviation);
     assert_near(trend.rms, 0.5, 0.08);
@@ -94,18 +98,20 @@ static void a_real_mosaic_passes(void **state) {
     free(image);
 }
 
-/* A pair of a setup that did not move: in place within what a change of focus does to lenses 60 px wide. */
+/* A pair of a setup that did not move: in place within what a change of focus does to lenses 60 px
+ * wide. */
 static void the_microlens_stays_in_place(void **state) {
     (void)state;
     int32_t width, height;
-    float *fixed = load("microlens/I0.tiff", &width, &height), *moving = load("microlens/Iz.tiff", &width, &height);
+    float *fixed = load("microlens/I0.tiff", &width, &height),
+          *moving = load("microlens/Iz.tiff", &width, &height);
     if (!fixed || !moving) skip();
     ptie_registration found;
     assert_ok(ptie_register(&found, fixed, moving, NULL, width, height));
-    assert_near(found.place.shift_x_px, 0, 0.5); /* found -0.30 +- 0.03 */
-    assert_near(found.place.shift_y_px, 0, 0.5); /* -0.16 +- 0.03 */
+    assert_near(found.place.shift_x_px, 0, 0.5);     /* found -0.30 +- 0.03 */
+    assert_near(found.place.shift_y_px, 0, 0.5);     /* -0.16 +- 0.03 */
     assert_near(found.place.magnification, 1, 3e-3); /* -0.0016 +- 0.00006 */
-    assert_near(found.place.rotation_rad, 0, 3e-4); /* 0.00009 +- 0.00007 */
+    assert_near(found.place.rotation_rad, 0, 3e-4);  /* 0.00009 +- 0.00007 */
     assert_true(found.correlation > 0.8);
     free(fixed);
     free(moving);
@@ -115,10 +121,12 @@ static void the_microlens_stays_in_place(void **state) {
 static void a_flow_is_no_reference(void **state) {
     (void)state;
     int32_t width, height;
-    float *still = load("plume/noflow.png", &width, &height), *flow = load("plume/flow_00.png", &width, &height);
+    float *still = load("plume/noflow.png", &width, &height),
+          *flow = load("plume/flow_00.png", &width, &height);
     if (!still || !flow) skip();
     ptie_registration found;
-    assert_fails(ptie_register(&found, still, flow, NULL, width, height), PTIE_ENUMERIC, "registration: ");
+    assert_fails(ptie_register(&found, still, flow, NULL, width, height), PTIE_ENUMERIC,
+                 "registration: ");
     free(still);
     free(flow);
 }

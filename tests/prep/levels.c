@@ -26,7 +26,8 @@ static void the_chain_undoes_the_sensor(void **state) {
     for (int i = 0; i < PIXELS; i++) {
         const float shape = (float)(800 + 300 * cos(0.05 * (i % W)) * cos(0.04 * (i / W)));
         light[i] = shape;
-        a[i] = dark[i] + 0.9f * shape * flow[i] + 0.1f * shape; /* a share of channel b, which has no flow */
+        a[i] = dark[i] + 0.9f * shape * flow[i] +
+               0.1f * shape; /* a share of channel b, which has no flow */
         b[i] = dark[i] + shape;
     }
     ptie_subtract_dark(a, dark, PIXELS);
@@ -39,7 +40,8 @@ static void the_chain_undoes_the_sensor(void **state) {
     ptie_scale_image(a, ptie_masked_mean(flow, NULL, PIXELS) / mean, PIXELS);
     /* Rounding of 1100 + 20, five operations of 6e-8 each. */
     for (int i = 0; i < PIXELS; i++) assert_near((double)a[i], (double)flow[i], 1e-6);
-    assert_near(mean, ptie_masked_mean(light, NULL, PIXELS), 2); /* the level: 5 % / sqrt(2747) of 1000 */
+    assert_near(mean, ptie_masked_mean(light, NULL, PIXELS),
+                2); /* the level: 5 % / sqrt(2747) of 1000 */
 }
 
 static void the_mean_is_over_the_light(void **state) {
@@ -53,7 +55,8 @@ static void the_mean_is_over_the_light(void **state) {
         mask[i] = i % 7 != 0;
         if (mask[i]) sum += (double)image[i], count++;
     }
-    assert_near(ptie_masked_mean(image, mask, PIXELS), sum / count, 1e-13); /* 2747 roundings of doubles */
+    assert_near(ptie_masked_mean(image, mask, PIXELS), sum / count,
+                1e-13); /* 2747 roundings of doubles */
     memset(mask, 0, sizeof mask);
     assert_true(isnan(ptie_masked_mean(image, mask, PIXELS)));
 }
@@ -74,9 +77,11 @@ static void opaque_references_do_not_divide_by_nothing(void **state) {
 static void references_without_light_are_refused(void **state) {
     (void)state;
     float image[12] = {0}, gain[12];
-    assert_fails(ptie_flat_gain(gain, image, NULL, 4, 3, 0.1), PTIE_ENUMERIC, "mean intensity is not positive");
+    assert_fails(ptie_flat_gain(gain, image, NULL, 4, 3, 0.1), PTIE_ENUMERIC,
+                 "mean intensity is not positive");
     image[6] = NAN;
-    assert_fails(ptie_flat_gain(gain, image, NULL, 4, 3, 0.1), PTIE_ENUMERIC, "reference: value is not finite (at x=2, y=1");
+    assert_fails(ptie_flat_gain(gain, image, NULL, 4, 3, 0.1), PTIE_ENUMERIC,
+                 "reference: value is not finite (at x=2, y=1");
     assert_fails(ptie_flat_gain(gain, image, NULL, 4, 3, 0), PTIE_EINVAL, "floor is out of range");
 }
 

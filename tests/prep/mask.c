@@ -28,12 +28,14 @@ static void a_nozzle_is_found_and_specks_are_not(void **state) {
     }
     for (int margin = 0; margin <= 5; margin += 5) {
         assert_ok(ptie_opaque_mask(mask, reference, W, H, 0.3, 2, margin));
-        for (int i = 0; i < PIXELS; i++) assert_int_equal(mask[i], !in_nozzle(i % W, i / W, margin));
+        for (int i = 0; i < PIXELS; i++)
+            assert_int_equal(mask[i], !in_nozzle(i % W, i / W, margin));
     }
     assert_ok(ptie_opaque_mask(mask, reference, W, H, 0.3, 0, 0)); /* as the threshold says */
     for (int i = 0; i < PIXELS; i++) assert_int_equal(mask[i], reference[i] > 100);
     reference[3] = INFINITY;
-    assert_fails(ptie_opaque_mask(mask, reference, W, H, 0.3, 0, 0), PTIE_ENUMERIC, "reference: value is not finite");
+    assert_fails(ptie_opaque_mask(mask, reference, W, H, 0.3, 0, 0), PTIE_ENUMERIC,
+                 "reference: value is not finite");
 }
 
 static void fill(float *image, const uint8_t *mask, int32_t width, int32_t height) {
@@ -59,12 +61,14 @@ static void what_is_filled_continues_its_surroundings(void **state) {
         else /* means of neighbours: within the range at the nozzle's rim, 96.6 to 106.5 */
             assert_true(image[i] > 94 && image[i] < 107);
     /* At the rim the fill follows within what the surface changes over three pixels. */
-    for (int x = 0; x < 30; x++) assert_near((double)image[35 * W + x], (double)before[34 * W + x], 0.9);
+    for (int x = 0; x < 30; x++)
+        assert_near((double)image[35 * W + x], (double)before[34 * W + x], 0.9);
 }
 
 static void constants_are_filled_by_themselves_at_any_size(void **state) {
     (void)state;
-    static const int32_t sizes[][2] = {{1, 1}, {2, 1}, {1, 7}, {5, 3}, {16, 16}, {33, 17}, {120, 93}};
+    static const int32_t sizes[][2] = {{1, 1},   {2, 1},   {1, 7},   {5, 3},
+                                       {16, 16}, {33, 17}, {120, 93}};
     ptie_random random;
     ptie_random_init(&random, 12, PTIE_STREAM_TEXTURE, 0);
     for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
@@ -76,7 +80,8 @@ static void constants_are_filled_by_themselves_at_any_size(void **state) {
             image[i] = mask[i] ? 7 : NAN;
         }
         fill(image, mask, sizes[s][0], sizes[s][1]);
-        for (int32_t i = 0; i < pixels; i++) assert_near((double)image[i], 7, 1e-5); /* 7 levels of roundings */
+        for (int32_t i = 0; i < pixels; i++)
+            assert_near((double)image[i], 7, 1e-5); /* 7 levels of roundings */
         memset(mask, 0, sizeof mask);
         fill(image, mask, sizes[s][0], sizes[s][1]);
         for (int32_t i = 0; i < pixels; i++) assert_true(image[i] == 0 || pixels == 1);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Registration estimated: planes of blobs whose places are known exactly, under all that tells planes apart. */
+/* Registration estimated: planes of blobs whose places are known exactly, under all that tells
+ * planes apart. */
 #include "support/support.h"
 
 #include <math.h>
@@ -33,12 +34,14 @@ static void add_blob(float *image, int32_t width, int32_t height, blob b) {
     for (int32_t v = (int32_t)fmax(0, ceil(y - reach)); v < height && v <= y + reach; v++)
         for (int32_t u = (int32_t)fmax(0, ceil(x - reach)); u < width && u <= x + reach; u++)
             image[v * width + u] +=
-                (float)(b.height * exp(-((u - x) * (u - x) + (v - y) * (v - y)) / (2 * b.sigma * b.sigma)));
+                (float)(b.height *
+                        exp(-((u - x) * (u - x) + (v - y) * (v - y)) / (2 * b.sigma * b.sigma)));
 }
 
 /* The blobs as a plane at `place` shows them: 1 plus texture. */
 static void show(float *image, int32_t width, int32_t height, ptie_similarity place) {
-    const double c = place.magnification * cos(place.rotation_rad), s = place.magnification * sin(place.rotation_rad);
+    const double c = place.magnification * cos(place.rotation_rad),
+                 s = place.magnification * sin(place.rotation_rad);
     for (int i = 0; i < width * height; i++) image[i] = 1;
     for (int i = 0; i < BLOBS; i++) {
         const blob b = blobs[i];
@@ -76,13 +79,15 @@ static void check(const ptie_registration *found, ptie_similarity place, double 
     assert_true(d->shift_x_px < shift_px && d->shift_y_px < shift_px);
 }
 
-/* Texture of 4 % rms, 1 % of noise in each plane, other gains, other light.  Measured deviations 0.0073 to 0.0094 px,
-   errors up to 0.0067 px. */
+/* Texture of 4 % rms, 1 % of noise in each plane, other gains, other light.  Measured deviations
+   0.0073 to 0.0094 px, errors up to 0.0067 px. */
 static void small_motions_are_found_through_noise(void **state) {
     (void)state;
     enum { N = 256 };
-    static const ptie_similarity places[] = {
-        {0, 0, 1, 0}, {0.5, -0.25, 1, 0}, {3.37, -5.81, 1.004, -0.006}, {-0.73, 0.11, 0.997, 0.002}};
+    static const ptie_similarity places[] = {{0, 0, 1, 0},
+                                             {0.5, -0.25, 1, 0},
+                                             {3.37, -5.81, 1.004, -0.006},
+                                             {-0.73, 0.11, 0.997, 0.002}};
     static float fixed[N * N], moving[N * N];
     scatter(N * 0.7);
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
@@ -102,8 +107,9 @@ static void small_motions_are_found_through_noise(void **state) {
 static void large_motions_are_found(void **state) {
     (void)state;
     enum { W = 400, H = 300 };
-    static const ptie_similarity places[] = {{60, -40, 1, 0},      {-20, 15, 1.08, 0.1},    {10, 30, 0.93, -0.14},
-                                             {0, 0, 1.1, 0.157},   {0, 0, 0.9, -0.157},     {-5, 8, 0.9, 0.05}};
+    static const ptie_similarity places[] = {{60, -40, 1, 0},       {-20, 15, 1.08, 0.1},
+                                             {10, 30, 0.93, -0.14}, {0, 0, 1.1, 0.157},
+                                             {0, 0, 0.9, -0.157},   {-5, 8, 0.9, 0.05}};
     static float fixed[W * H], moving[W * H];
     scatter(W * 0.7);
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
@@ -117,8 +123,8 @@ static void large_motions_are_found(void **state) {
     }
 }
 
-/* Over noise, the errors scatter as the deviations say: 12 draws of 4 numbers, whose mean square in units of the
-   deviation has a standard deviation of sqrt(2 / 48) = 0.2.  Measured 0.90. */
+/* Over noise, the errors scatter as the deviations say: 12 draws of 4 numbers, whose mean square in
+   units of the deviation has a standard deviation of sqrt(2 / 48) = 0.2.  Measured 0.90. */
 static void deviations_are_honest(void **state) {
     (void)state;
     enum { N = 160, DRAWS = 12 };
@@ -193,13 +199,16 @@ static void planes_without_anything_in_common_are_refused(void **state) {
     static float fixed[N * N], moving[N * N];
     ptie_registration found;
     for (int i = 0; i < N * N; i++) fixed[i] = moving[i] = 5;
-    assert_fails(ptie_register(&found, fixed, moving, NULL, N, N), PTIE_ENUMERIC, "no texture to compare");
+    assert_fails(ptie_register(&found, fixed, moving, NULL, N, N), PTIE_ENUMERIC,
+                 "no texture to compare");
     add_noise(fixed, N * N, 1, 60);
     add_noise(moving, N * N, 1, 61);
     assert_fails(ptie_register(&found, fixed, moving, NULL, N, N), PTIE_ENUMERIC, "registration: ");
     fixed[N + 3] = NAN;
-    assert_fails(ptie_register(&found, fixed, moving, NULL, N, N), PTIE_ENUMERIC, "fixed: value is not finite (at x=3, y=1");
-    assert_fails(ptie_register(&found, fixed, moving, NULL, 63, N), PTIE_EINVAL, "width_px is out of range");
+    assert_fails(ptie_register(&found, fixed, moving, NULL, N, N), PTIE_ENUMERIC,
+                 "fixed: value is not finite (at x=3, y=1");
+    assert_fails(ptie_register(&found, fixed, moving, NULL, 63, N), PTIE_EINVAL,
+                 "width_px is out of range");
 }
 
 int main(void) {

@@ -34,12 +34,14 @@ static void scipy_gives_the_same_images(void **state) {
     assert_non_null(fgets(line, sizeof line, file));
     ptie_similarity t;
     int transforms = 0;
-    while (fscanf(file, "%lf %lf %lf %lf", &t.shift_x_px, &t.shift_y_px, &t.magnification, &t.rotation_rad) == 4) {
+    while (fscanf(file, "%lf %lf %lf %lf", &t.shift_x_px, &t.shift_y_px, &t.magnification,
+                  &t.rotation_rad) == 4) {
         resample(found, NULL, image, W, H, t);
         for (int i = 0; i < W * H; i++) {
             double expected;
             assert_int_equal(fscanf(file, "%lf", &expected), 1);
-            /* Fractions to 1e-6 of a pixel, slopes up to 2 per pixel, 20 roundings of 6e-8; measured 2.7e-7. */
+            /* Fractions to 1e-6 of a pixel, slopes up to 2 per pixel, 20 roundings of 6e-8;
+             * measured 2.7e-7. */
             assert_near((double)found[i], expected, 1.5e-6);
         }
         transforms++;
@@ -48,7 +50,8 @@ static void scipy_gives_the_same_images(void **state) {
     fclose(file);
 }
 
-/* Cubic splines reproduce cubics, but for the mirrored edges: 20 pixels in, 0.27^20 of them are left. */
+/* Cubic splines reproduce cubics, but for the mirrored edges: 20 pixels in, 0.27^20 of them are
+ * left. */
 static void cubics_stay_cubics(void **state) {
     (void)state;
     enum { N = 96 };
@@ -56,16 +59,20 @@ static void cubics_stay_cubics(void **state) {
     const ptie_similarity t = {1.37, -2.61, 1.013, 0.021};
     for (int i = 0; i < N * N; i++) {
         const double x = (i % N - (N - 1) / 2.0) / N, y = (i / N - (N - 1) / 2.0) / N;
-        image[i] = (float)(1 + x - 2 * y + x * x - 3 * x * y + 4 * x * x * x - 2 * x * x * y + y * y * y);
+        image[i] =
+            (float)(1 + x - 2 * y + x * x - 3 * x * y + 4 * x * x * x - 2 * x * x * y + y * y * y);
     }
     resample(found, NULL, image, N, N, t);
     for (int i = 0; i < N * N; i++) {
         const double u = i % N - (N - 1) / 2.0, v = i / N - (N - 1) / 2.0;
         if (fabs(u) > N / 2 - 24 || fabs(v) > N / 2 - 24) continue;
-        const double c = t.magnification * cos(t.rotation_rad), s = t.magnification * sin(t.rotation_rad);
+        const double c = t.magnification * cos(t.rotation_rad),
+                     s = t.magnification * sin(t.rotation_rad);
         const double x = (t.shift_x_px + c * u - s * v) / N, y = (t.shift_y_px + s * u + c * v) / N;
-        const double expected = 1 + x - 2 * y + x * x - 3 * x * y + 4 * x * x * x - 2 * x * x * y + y * y * y;
-        assert_near((double)found[i], expected, 1.5e-6); /* 20 roundings of values below 2; measured 5.1e-7 */
+        const double expected =
+            1 + x - 2 * y + x * x - 3 * x * y + 4 * x * x * x - 2 * x * x * y + y * y * y;
+        assert_near((double)found[i], expected,
+                    1.5e-6); /* 20 roundings of values below 2; measured 5.1e-7 */
     }
 }
 
@@ -90,16 +97,15 @@ static void staying_in_place_changes_nothing(void **state) {
 static void waves_keep_their_amplitude(void **state) {
     (void)state;
     enum { W = 160, H = 4 };
-    static const struct {
-        double period, error;
-    } cases[] = {{16, 0.0001}, {8, 0.0012}, {4, 0.028}};
+    static const struct { double period, error; } cases[] = {{16, 0.0001}, {8, 0.0012}, {4, 0.028}};
     float image[W * H], found[W * H];
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         double worst = 0;
         for (int step = 0; step <= 8; step++) {
             const double k = 2 * PI / cases[c].period;
             for (int i = 0; i < W * H; i++) image[i] = (float)cos(k * (i % W) + 0.4);
-            resample(found, NULL, image, W, H, (ptie_similarity){.shift_x_px = step / 8.0, .magnification = 1});
+            resample(found, NULL, image, W, H,
+                     (ptie_similarity){.shift_x_px = step / 8.0, .magnification = 1});
             for (int x = 24; x < W - 24; x++)
                 worst = fmax(worst, fabs((double)found[x] - cos(k * (x + step / 8.0) + 0.4)));
         }
@@ -125,7 +131,8 @@ static void what_was_mirrored_is_marked(void **state) {
 static void planes_must_overlap(void **state) {
     (void)state;
     ptie_resampler *resampler;
-    assert_fails(ptie_resampler_create(&resampler, 64, 32, (ptie_similarity){.shift_y_px = 31, .magnification = 1}),
+    assert_fails(ptie_resampler_create(&resampler, 64, 32,
+                                       (ptie_similarity){.shift_y_px = 31, .magnification = 1}),
                  PTIE_EINVAL, "plane leaves the frame");
     assert_fails(ptie_resampler_create(&resampler, 64, 32, (ptie_similarity){0}), PTIE_EINVAL,
                  "magnification is out of range");

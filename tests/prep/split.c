@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Channels of a sensor image: every layout by its definition, every demosaicing by what it keeps. */
+/* Channels of a sensor image: every layout by its definition, every demosaicing by what it keeps.
+ */
 #include "support/support.h"
 
 #include <math.h>
@@ -10,8 +11,8 @@
 
 enum { W = 48, H = 36, CW = W / 2, CH = H / 2 };
 
-static void split(float channel[4][CW * CH], const float *image, ptie_demosaic demosaic, int32_t roi_x,
-                  int32_t roi_y) {
+static void split(float channel[4][CW * CH], const float *image, ptie_demosaic demosaic,
+                  int32_t roi_x, int32_t roi_y) {
     ptie_splitter_params p;
     ptie_splitter_params_init(&p);
     p.width_px = W, p.height_px = H, p.demosaic = demosaic, p.roi_x_px = roi_x, p.roi_y_px = roi_y;
@@ -27,7 +28,8 @@ static void split(float channel[4][CW * CH], const float *image, ptie_demosaic d
     ptie_splitter_free(splitter);
 }
 
-/* Channel c of the sensor's cells is at columns with the parity of c % 2 of the sensor, rows of c / 2. */
+/* Channel c of the sensor's cells is at columns with the parity of c % 2 of the sensor, rows of c
+ * / 2. */
 static void pixels_go_to_their_channel_for_any_region(void **state) {
     (void)state;
     float image[W * H], channel[4][CW * CH];
@@ -64,7 +66,8 @@ static void bilinear_keeps_planes_at_the_centres_of_the_cells(void **state) {
     for (int c = 0; c < 4; c++)
         for (int y = 1; y < CH - 1; y++)
             for (int x = 1; x < CW - 1; x++)
-                assert_true(channel[c][y * CW + x] == (float)(3 * (2 * x + 0.5) - 2 * (2 * y + 0.5)));
+                assert_true(channel[c][y * CW + x] ==
+                            (float)(3 * (2 * x + 0.5) - 2 * (2 * y + 0.5)));
 }
 
 /* A wave on the sensor, at the centre of cell (x, y). */
@@ -81,22 +84,26 @@ static void fourier_keeps_band_limited_images(void **state) {
             split(channel, image, PTIE_DEMOSAIC_FOURIER, 0, 0);
             for (int c = 0; c < 4; c++)
                 for (int k = 0; k < CW * CH; k++) /* measured 3.1e-7 */
-                    assert_near((double)channel[c][k], wave(2 * (k % CW) + 0.5, 2 * (k / CW) + 0.5, i, j), 1e-6);
+                    assert_near((double)channel[c][k],
+                                wave(2 * (k % CW) + 0.5, 2 * (k / CW) + 0.5, i, j), 1e-6);
         }
 }
 
-/* (P2): a wave of k rad per pixel of the channel keeps |3/4 + 1/4 exp(ik)| of its amplitude per axis. */
+/* (P2): a wave of k rad per pixel of the channel keeps |3/4 + 1/4 exp(ik)| of its amplitude per
+ * axis. */
 static void bilinear_fades_as_its_transfer_function_says(void **state) {
     (void)state;
     float image[W * H], channel[4][CW * CH];
     for (int i = 0; i <= W / 4; i += 3) {
         const double k = 2 * PI * 2 * i / W, re = 0.75 + 0.25 * cos(k), im = 0.25 * sin(k);
-        const double turn = atan2(im, re) - k / 4; /* of channel 0, moved to the right; the others by symmetry */
+        const double turn =
+            atan2(im, re) - k / 4; /* of channel 0, moved to the right; the others by symmetry */
         for (int n = 0; n < W * H; n++) image[n] = (float)cos(2 * PI * i * (n % W) / W);
         split(channel, image, PTIE_DEMOSAIC_BILINEAR, 0, 0);
         for (int c = 0; c < 4; c++)
             for (int x = 1; x < CW - 1; x++) {
-                const double expected = hypot(re, im) * cos(k * (x + 0.25) + (c % 2 ? -turn : turn));
+                const double expected =
+                    hypot(re, im) * cos(k * (x + 0.25) + (c % 2 ? -turn : turn));
                 assert_near((double)channel[c][5 * CW + x], expected, 1e-6);
             }
     }
@@ -130,7 +137,8 @@ static void frames_are_divided_into_their_parts(void **state) {
         assert_true(part[0][0] == (cases[n].channels > 1 ? -1 : 0));
         for (int c = cases[n].channels > 1; c < cases[n].channels; c++)
             for (int i = 0; i < width * height; i++) {
-                const int x = c % cases[n].across * width + i % width, y = c / cases[n].across * height + i / width;
+                const int x = c % cases[n].across * width + i % width,
+                          y = c / cases[n].across * height + i / width;
                 assert_true(part[c][i] == image[y * OW + x]);
             }
         ptie_scratch_free(scratch);
@@ -143,7 +151,8 @@ static void arguments_are_checked(void **state) {
     ptie_splitter_params p;
     ptie_splitter_params_init(&p);
     ptie_splitter *splitter;
-    assert_fails(ptie_splitter_create(&splitter, &p), PTIE_EINVAL, "width_px is out of range (expected 2..32768, found 0)");
+    assert_fails(ptie_splitter_create(&splitter, &p), PTIE_EINVAL,
+                 "width_px is out of range (expected 2..32768, found 0)");
     p.width_px = p.height_px = 4;
     p.roi_x_px = -1;
     assert_fails(ptie_splitter_create(&splitter, &p), PTIE_EINVAL, "roi_x_px");
