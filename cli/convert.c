@@ -80,9 +80,7 @@ static ptie_status convert(const settings *s, const char *provenance) {
     ptie_convert_params_init(&params);
     params.input = s->input;
     params.output = s->output;
-    params.first = s->frames.first;
-    params.count = frames_in(s->frames);
-    params.step = s->frames.step;
+    params.frames = s->frames;
     params.roi = s->roi;
     params.low = s->range.low;
     params.high = s->range.high;

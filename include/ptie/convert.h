@@ -14,7 +14,7 @@ typedef struct ptie_convert_params {
     const char *input;          /* any recording ptie_recording_open reads; required */
     const char *output;         /* any kind ptie_writer_create writes; required */
     const char *name;           /* what the map is called in the output; NULL: as in the input, else "data" */
-    int64_t first, count, step; /* frames to take; count 0 = to the end; default 0, 0, 1 */
+    ptie_frame_range frames;    /* frames to take; default 0, 0, 1 */
     ptie_rect roi;              /* pixels to take; all 0 = the whole frame */
     double low, high;           /* images and video: values of black and white.  Equal (default): images keep integers and
                                    use each frame's own extent for other values; video uses that of all frames */

@@ -40,6 +40,9 @@ typedef struct ptie_recording_info {
     bool bottom_up;      /* stored with the bottom row first (frames are handed out top row first) */
 } ptie_recording_info;
 
+/* Frames first, first + step, ... below end, as a Python slice; end 0 = all there are. */
+typedef struct ptie_frame_range { int64_t first, end, step; } ptie_frame_range;
+
 typedef struct ptie_recording ptie_recording;
 
 /* Opens for reading; the kind is found from the content, not from the name.  Errors: PTIE_EIO (with the

@@ -8,9 +8,6 @@
 #include <ptie/recording.h>
 #include <ptie/rig.h>
 
-/* Frames first, first + step, ... below end, as a Python slice; end 0 = all there are. */
-typedef struct ptie_frame_range { int64_t first, end, step; } ptie_frame_range;
-
 typedef struct ptie_run_params {
     uint32_t struct_size;      /* set by ptie_run_params_init */
     const ptie_rig *rig;

@@ -10,7 +10,7 @@
 enum { LEVELS = 256 };
 
 void ptie_convert_params_init(ptie_convert_params *params) {
-    *params = (ptie_convert_params){.struct_size = sizeof *params, .step = 1, .played_hz = 25};
+    *params = (ptie_convert_params){.struct_size = sizeof *params, .frames = {.step = 1}, .played_hz = 25};
 }
 
 ptie_status ptie_convert(ptie_ctx *ctx, const ptie_convert_params *params, ptie_progress progress) {
@@ -22,9 +22,9 @@ ptie_status ptie_convert(ptie_ctx *ctx, const ptie_convert_params *params, ptie_
     PTIE_TRY(ptie_check_pointer(own.input, where, "input"));
     PTIE_TRY(ptie_check_pointer(own.output, where, "output"));
     if (own.name) PTIE_TRY(ptie_check_name(own.name, where));
-    PTIE_TRY(ptie_check_integer(own.first, 0, INT64_MAX, where, "first"));
-    PTIE_TRY(ptie_check_integer(own.count, 0, INT64_MAX, where, "count"));
-    PTIE_TRY(ptie_check_integer(own.step, 1, INT32_MAX, where, "step"));
+    PTIE_TRY(ptie_check_integer(own.frames.first, 0, INT64_MAX, where, "frames.first"));
+    PTIE_TRY(ptie_check_integer(own.frames.end, 0, INT64_MAX, where, "frames.end"));
+    PTIE_TRY(ptie_check_integer(own.frames.step, 1, INT64_MAX, where, "frames.step"));
     PTIE_TRY(ptie_check_number(own.low, -1e30, 1e30, where, "low"));
     PTIE_TRY(ptie_check_number(own.high, own.low, 1e30, where, "high"));
     PTIE_TRY(ptie_check_integer((int64_t)own.colours, PTIE_GRAY, PTIE_DIVERGING, where, "colours"));

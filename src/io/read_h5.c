@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "base/text.h"
+#include "io/detector.h"
 #include "io/nexus.h"
 #include "io/reader.h"
 
@@ -172,6 +173,7 @@ static void take_units(const h5_recording *recording, ptie_recording_info *info)
     double interval_s = axis_step(recording->h5, group, "time", PTIE_TIME);
     info->frame_rate_hz = interval_s > 0 ? 1 / interval_s : 0;
     take_frame_numbers(recording->h5, group, info);
+    ptie_detector_read(recording->h5, info);
 }
 
 static ptie_status h5_load(h5_recording *recording, ptie_recording_info *info, const char *path,

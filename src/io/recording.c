@@ -110,6 +110,18 @@ ptie_status ptie_io_open(ptie_recording **out, const char *path) {
     return PTIE_OK;
 }
 
+ptie_status ptie_io_choose(int64_t *count, ptie_frame_range range, int64_t recorded, const char *path) {
+    const int64_t end = range.end ? range.end : recorded;
+    if (range.first >= recorded)
+        return PTIE_FAIL(PTIE_EINVAL, "%s: first frame out of range (expected 0..%lld, found %lld)", path,
+                         (long long)recorded - 1, (long long)range.first);
+    if (end > recorded || end <= range.first)
+        return PTIE_FAIL(PTIE_EINVAL, "%s: end of the frames out of range (expected %lld..%lld, found %lld)",
+                         path, (long long)range.first + 1, (long long)recorded, (long long)end);
+    *count = (end - range.first - 1) / range.step + 1;
+    return PTIE_OK;
+}
+
 bool ptie_io_has_data_sets(const char *path) {
     const ptie_reader *reader;
     return find_reader(&reader, path, "") == PTIE_OK && reader->has_data_sets;

@@ -12,6 +12,9 @@ void ptie_io_close(ptie_recording *recording); /* NULL is fine */
 const ptie_recording_info *ptie_io_info(const ptie_recording *recording);
 ptie_status ptie_io_read(ptie_recording *recording, int64_t frame, float *data);
 
+/* How many frames of `recorded` a range takes.  PTIE_EINVAL, naming `path`, when it reaches behind them. */
+ptie_status ptie_io_choose(int64_t *count, ptie_frame_range range, int64_t recorded, const char *path);
+
 /* Is `path` a file that holds several data sets, none of which it names ("jet.h5")? */
 bool ptie_io_has_data_sets(const char *path);
 

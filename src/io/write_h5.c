@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "base/memory.h"
+#include "io/detector.h"
 #include "io/nexus.h"
 #include "io/pack.h"
 #include "io/writer.h"
@@ -60,6 +61,7 @@ static ptie_status begin(h5_map *map) {
     snprintf(map->path, sizeof map->path, PTIE_NEXUS_DATA "/%s", job->name);
     PTIE_TRY(ptie_h5_create(&map->h5, job->path, job->overwrite));
     PTIE_TRY(ptie_nexus_begin(map->h5, &map->axes, &signal, 1));
+    PTIE_TRY(ptie_detector_write(map->h5, info));
     if (!job->source && !job->command) return PTIE_OK;
     return ptie_nexus_process(map->h5, job->source, job->command);
 }

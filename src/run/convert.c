@@ -22,22 +22,6 @@ typedef struct conversion {
     float *frame; /* (H, W) as read; the rectangle is moved to its front */
 } conversion;
 
-static ptie_status choose_frames(conversion *c) {
-    const ptie_convert_params *p = c->params;
-    const int64_t recorded = ptie_io_info(c->input)->frames;
-    if (p->first >= recorded)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: first frame out of range (expected 0..%lld, found %lld)",
-                         p->input, (long long)recorded - 1, (long long)p->first);
-    const int64_t available = (recorded - p->first - 1) / p->step + 1;
-    if (p->count > available)
-        return PTIE_FAIL(PTIE_EINVAL,
-                         "%s: too few frames (expected %lld from frame %lld in steps of %lld, found %lld)",
-                         p->input, (long long)p->count, (long long)p->first, (long long)p->step,
-                         (long long)available);
-    c->frames = p->count ? p->count : available;
-    return PTIE_OK;
-}
-
 static ptie_status choose_pixels(conversion *c) {
     const ptie_recording_info *info = ptie_io_info(c->input);
     const ptie_rect roi = c->params->roi, none = {0};
@@ -62,11 +46,13 @@ static ptie_recording_info describe(const conversion *c) {
     ptie_recording_info info = *ptie_io_info(c->input);
     info.width_px = c->roi.width_px;
     info.height_px = c->roi.height_px;
+    info.roi_x_px += c->roi.x_px;
+    info.roi_y_px += c->roi.y_px;
     info.frames = c->frames;
-    info.first_frame += p->first * info.frame_step;
+    info.first_frame += p->frames.first * info.frame_step;
     if (c->frames > 1) {
-        info.frame_step *= p->step;
-        info.frame_rate_hz /= (double)p->step;
+        info.frame_step *= p->frames.step;
+        info.frame_rate_hz /= (double)p->frames.step;
     }
     return info;
 }
@@ -86,7 +72,7 @@ static ptie_status open_input(conversion *c) {
     const ptie_convert_params *p = c->params;
     PTIE_TRY(ptie_output_differs(p->output, p->input));
     PTIE_TRY(ptie_io_open(&c->input, p->input));
-    PTIE_TRY(choose_frames(c));
+    PTIE_TRY(ptie_io_choose(&c->frames, p->frames, ptie_io_info(c->input)->frames, p->input));
     PTIE_TRY(choose_pixels(c));
     const ptie_recording_info *info = ptie_io_info(c->input);
     c->low = p->low;
@@ -118,7 +104,7 @@ static ptie_status create_output(conversion *c, ptie_pool *pool) {
 static ptie_status read_frame(conversion *c, int64_t i) {
     const ptie_convert_params *p = c->params;
     const size_t pitch = (size_t)ptie_io_info(c->input)->width_px, width = (size_t)c->roi.width_px;
-    PTIE_TRY(ptie_io_read(c->input, p->first + i * p->step, c->frame));
+    PTIE_TRY(ptie_io_read(c->input, p->frames.first + i * p->frames.step, c->frame));
     const float *from = c->frame + (size_t)c->roi.y_px * pitch + (size_t)c->roi.x_px;
     for (size_t y = 0; y < (size_t)c->roi.height_px; y++)
         memmove(c->frame + y * width, from + y * pitch, width * sizeof *from);

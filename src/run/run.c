@@ -79,16 +79,7 @@ static int64_t recorded_frame(const run *r, int64_t i) {
 /* --- before the first frame -------------------------------------------------------------------------- */
 
 static ptie_status choose_frames(run *r) {
-    const ptie_frame_range f = r->params->frames;
-    const int64_t end = f.end ? f.end : r->recorded.frames;
-    if (f.first >= r->recorded.frames)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: first frame out of range (expected 0..%lld, found %lld)",
-                         ptie_run_name(r->params), (long long)r->recorded.frames - 1, (long long)f.first);
-    if (end > r->recorded.frames || end <= f.first)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: end of the frames out of range (expected %lld..%lld, found %lld)",
-                         ptie_run_name(r->params), (long long)f.first + 1, (long long)r->recorded.frames,
-                         (long long)end);
-    r->frames = (end - f.first - 1) / f.step + 1;
+    PTIE_TRY(ptie_io_choose(&r->frames, r->params->frames, r->recorded.frames, ptie_run_name(r->params)));
     r->sample = r->frames < SAMPLE ? r->frames : SAMPLE;
     return PTIE_OK;
 }

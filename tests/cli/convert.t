@@ -97,7 +97,7 @@ What cannot be taken is told
   ! ptie: r.npy: first frame out of range (expected 0..4, found 5)
   [2]
   $ ptie convert r.npy a.tif --frames 1:7
-  ! ptie: r.npy: too few frames (expected 6 from frame 1 in steps of 1, found 4)
+  ! ptie: r.npy: end of the frames out of range (expected 2..5, found 7)
   [2]
   $ ptie convert r.npy a.tif --frames 3:2
   ! ptie: convert: --frames: expected frames a:b:step, b not included, such as 0:100:2, found '3:2'
