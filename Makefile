@@ -23,7 +23,7 @@ dependencies:
 
 .PHONY: test-dependencies
 test-dependencies:
-	@tools/install-dependencies build test
+	@tools/install-dependencies build test program
 
 demo: all
 	@tools/demo $(BUILD)/ptie out/demo
