@@ -10,10 +10,12 @@
 #include "fft/fft.h"
 #include "run/planes.h"
 #include "tie/derivative.h"
+#include "tie/solver.h"
 
 #define TWO_PI 6.283185307179586476925
 
 struct ptie_reprojection {
+    ptie_solver *solver; /* by diffraction; NULL: by the linear model, which has all of the rest */
     ptie_tie_weights weights;
     ptie_fft *fft;
     /* Per entry of the spectrum: the root of how often it counts, 0 for the mean, which is not compared; and that
@@ -40,7 +42,7 @@ static double forward_response(double k2, const void *context) {
     return ((const ptie_solver_params *)context)->wavelength_m / TWO_PI * k2;
 }
 
-static ptie_status build(ptie_reprojection *r, const ptie_solver_params *solver, int32_t workers) {
+static ptie_status build_linear(ptie_reprojection *r, const ptie_solver_params *solver) {
     PTIE_TRY(ptie_tie_weigh(&r->weights, solver));
     PTIE_TRY(ptie_fft_create(&r->fft, solver->boundary == PTIE_MIRROR ? PTIE_FFT_MIRROR : PTIE_FFT_REAL,
                              solver->width_px, solver->height_px));
@@ -57,15 +59,30 @@ static ptie_status build(ptie_reprojection *r, const ptie_solver_params *solver,
     ptie_slicer slicer = {0};
     carve(r, &slicer);
     r->bytes = slicer.used;
+    return PTIE_OK;
+}
+
+static ptie_status build_diffraction(ptie_reprojection *r, ptie_solver_params solver) {
+    if (solver.method == PTIE_SOLVE_DIRECT) solver.method = PTIE_SOLVE_MAX_INTENSITY; /* has a wave */
+    PTIE_TRY(ptie_tie_plan(&r->solver, &solver));
+    r->bytes = ptie_tie_scratch(r->solver);
+    return PTIE_OK;
+}
+
+/* The linear model has no dark places. */
+static ptie_status build(ptie_reprojection *r, const ptie_solver_params *solver, int32_t workers) {
+    const bool linear = solver->method == PTIE_SOLVE_DIRECT && !solver->mask;
+    PTIE_TRY(linear ? build_linear(r, solver) : build_diffraction(r, *solver));
     return ptie_alloc_status(&r->scratch, (size_t)workers, r->bytes, "run: scratch");
 }
 
-ptie_status ptie_reprojection_create(ptie_reprojection **out, const ptie_rig *rig, int32_t width_px,
-                                     int32_t height_px, int32_t workers) {
+ptie_status ptie_reprojection_create(ptie_reprojection **out, const ptie_rig *rig, const uint8_t *mask,
+                                     int32_t width_px, int32_t height_px, int32_t workers) {
     *out = NULL;
     ptie_reprojection *r;
     PTIE_TRY(ptie_alloc_status(&r, 1, sizeof *r, "run"));
-    const ptie_solver_params solver = ptie_rig_solver(rig, width_px, height_px);
+    ptie_solver_params solver = ptie_rig_solver(rig, width_px, height_px);
+    solver.mask = mask;
     r->pixels = (size_t)width_px * (size_t)height_px;
     ptie_status status = build(r, &solver, workers);
     if (status == PTIE_OK)
@@ -77,6 +94,7 @@ ptie_status ptie_reprojection_create(ptie_reprojection **out, const ptie_rig *ri
 
 void ptie_reprojection_free(ptie_reprojection *r) {
     if (!r) return;
+    ptie_solver_free(r->solver);
     ptie_fft_free(r->fft);
     ptie_free(r->count);
     ptie_free(r->forward);
@@ -115,6 +133,8 @@ static double relative_distance(const float *a, const float *b, size_t count) {
 
 ptie_status ptie_reprojection_measure(const ptie_reprojection *r, int32_t worker, double *residual,
                                       const float *const *maps, size_t count, const float *const *planes) {
+    if (r->solver)
+        return ptie_tie_reproject(r->solver, residual, maps, count, planes, r->scratch + (size_t)worker * r->bytes);
     const work w = carve(r, &(ptie_slicer){.base = r->scratch + (size_t)worker * r->bytes});
     const size_t floats = ptie_fft_filter_floats(r->fft) * ptie_fft_entry_floats(r->fft);
     PTIE_TRY(ptie_tie_derivative(w.image, &r->weights, planes));

@@ -10,9 +10,10 @@
 
 typedef struct ptie_reprojection ptie_reprojection;
 
-/* For frames of this size (after binning), measured by at most `workers` threads at a time. */
-ptie_status ptie_reprojection_create(ptie_reprojection **out, const ptie_rig *rig, int32_t width_px,
-                                     int32_t height_px, int32_t workers);
+/* For frames of this size (after binning), measured by at most `workers` threads at a time.  mask: what is light, or
+   NULL. */
+ptie_status ptie_reprojection_create(ptie_reprojection **out, const ptie_rig *rig, const uint8_t *mask,
+                                     int32_t width_px, int32_t height_px, int32_t workers);
 void ptie_reprojection_free(ptie_reprojection *reprojection); /* NULL is fine */
 
 /* residual (out): one number per map.  Planes as in ptie_frame_solve. */

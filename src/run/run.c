@@ -172,8 +172,8 @@ static ptie_status make_plans(run *r) {
     const ptie_denoiser_params denoising = {.fast = p->fast, .all_threads = r->frames == 1};
     PTIE_TRY(ptie_frame_plan_create(&r->plan, r->engine, p->rig, ptie_prepare_mask(r->preparation), p->model,
                                     r->shape.width_px, r->shape.height_px, &denoising));
-    return ptie_reprojection_create(&r->reprojection, p->rig, r->shape.width_px, r->shape.height_px,
-                                    ptie_pool_threads(r->engine->pool));
+    return ptie_reprojection_create(&r->reprojection, p->rig, ptie_prepare_mask(r->preparation),
+                                    r->shape.width_px, r->shape.height_px, ptie_pool_threads(r->engine->pool));
 }
 
 static ptie_status prepare_planes(const run *r, const slot *s, const desk *d) {

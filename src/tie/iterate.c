@@ -42,8 +42,9 @@ size_t ptie_tie_iterate_scratch(const ptie_solver *solver) {
     return slicer.used;
 }
 
-void ptie_tie_diffract(const ptie_solver *solver, float *predicted, const float *phase_rad,
-                       const float *light, const ptie_wave *wave) {
+/* predicted (out): dI/dz of the wave sqrt(light) exp(i phase) by the angular spectrum. */
+static void diffract(const ptie_solver *solver, float *predicted, const float *phase_rad, const float *light,
+                     const ptie_wave *wave) {
     const ptie_tie_weights *weights = &solver->weights;
     const size_t pixels = ptie_solver_pixels(solver);
     memset(predicted, 0, pixels * sizeof *predicted);
@@ -80,10 +81,16 @@ static float largest(const float *image, size_t count) {
 /* What the phase so far does not explain; returns its largest value. */
 static double look_at_rest(const ptie_solver *solver, const work *w) {
     const size_t pixels = ptie_solver_pixels(solver);
-    ptie_tie_diffract(solver, w->left, w->phase, w->light, &w->wave);
+    diffract(solver, w->left, w->phase, w->light, &w->wave);
     for (size_t i = 0; i < pixels; i++) w->left[i] = w->measured[i] - w->left[i];
     ptie_tie_blank(w->left, solver->reached, pixels);
     return (double)largest(w->left, pixels);
+}
+
+static ptie_status measure(const ptie_solver *solver, const work *w, const float *const *planes) {
+    PTIE_TRY(ptie_tie_slope(w->measured, w->light, &solver->weights, planes));
+    ptie_tie_blank(w->measured, solver->reached, ptie_solver_pixels(solver));
+    return PTIE_OK;
 }
 
 static ptie_solver_report iterate(const ptie_solver *solver, const work *w) {
@@ -107,8 +114,7 @@ ptie_status ptie_tie_iterate(const ptie_solver *solver, float *phase_rad, const 
                              void *scratch, ptie_solver_report *report) {
     const work w = carve(solver, &(ptie_slicer){.base = scratch});
     const size_t pixels = ptie_solver_pixels(solver);
-    PTIE_TRY(ptie_tie_slope(w.measured, w.light, &solver->weights, planes));
-    ptie_tie_blank(w.measured, solver->reached, pixels);
+    PTIE_TRY(measure(solver, &w, planes));
     memcpy(w.left, w.measured, pixels * sizeof *w.left);
     memset(w.phase, 0, pixels * sizeof *w.phase);
     const ptie_solver_report result = iterate(solver, &w);
@@ -118,5 +124,28 @@ ptie_status ptie_tie_iterate(const ptie_solver *solver, float *phase_rad, const 
     ptie_tie_level(solver, w.phase);
     memcpy(phase_rad, w.phase, pixels * sizeof *phase_rad);
     if (report) *report = result;
+    return PTIE_OK;
+}
+
+/* Sum of squares about the mean. */
+static double spread(const float *image, size_t count) {
+    double sum = 0, squares = 0;
+    for (size_t i = 0; i < count; i++) sum += (double)image[i];
+    const double mean = sum / (double)count;
+    for (size_t i = 0; i < count; i++) squares += ((double)image[i] - mean) * ((double)image[i] - mean);
+    return squares;
+}
+
+ptie_status ptie_tie_reproject(const ptie_solver *solver, double *residual, const float *const *maps,
+                               size_t count, const float *const *planes, void *scratch) {
+    const work w = carve(solver, &(ptie_slicer){.base = scratch});
+    const size_t pixels = ptie_solver_pixels(solver);
+    PTIE_TRY(measure(solver, &w, planes));
+    const double all = spread(w.measured, pixels);
+    for (size_t n = 0; n < count; n++) {
+        memcpy(w.phase, maps[n], pixels * sizeof *w.phase);
+        look_at_rest(solver, &w);
+        residual[n] = all > 0 ? sqrt(spread(w.left, pixels) / all) : (double)NAN;
+    }
     return PTIE_OK;
 }

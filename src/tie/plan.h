@@ -21,7 +21,6 @@ struct ptie_solver {
     ptie_tie_weights weights;
     ptie_fft *fft;    /* of the boundary */
     float *inverse;   /* rad m: phase per (dI/dz) / I */
-    float *forward;   /* PTIE_SOLVE_DIRECT: the opposite, without regularisation */
     ptie_propagator propagator[PTIE_MAX_PLANES]; /* of the planes off focus; other methods */
     ptie_poisson poisson;                        /* methods that solve two Poisson equations */
 };
@@ -62,10 +61,6 @@ ptie_poisson_work ptie_poisson_slice(const ptie_poisson *poisson, ptie_slicer *s
 /* phase_rad += two Poisson equations on dI/dz = slope with intensity light (both as ptie_tie_slope). */
 void ptie_poisson_step(const ptie_solver *solver, float *phase_rad, const float *slope, const float *light,
                        const ptie_poisson_work *work);
-
-/* predicted (out): dI/dz of the wave sqrt(light) exp(i phase) by the angular spectrum, as ptie_tie_slope. */
-void ptie_tie_diffract(const ptie_solver *solver, float *predicted, const float *phase_rad,
-                       const float *light, const ptie_wave *wave);
 
 /* The methods other than PTIE_SOLVE_DIRECT. */
 size_t ptie_tie_iterate_scratch(const ptie_solver *solver);

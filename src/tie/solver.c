@@ -33,17 +33,6 @@ static double inverse_response(double k2, const void *context) {
     return k2 > 0 ? TWO_PI / p->wavelength_m * k2 / (k2 * k2 + pow(cutoff, 4)) : 0;
 }
 
-static double forward_response(double k2, const void *context) {
-    return ((const ptie_solver_params *)context)->wavelength_m / TWO_PI * k2;
-}
-
-static ptie_status make_filter(float **out, const ptie_solver *solver,
-                               double (*response)(double k2, const void *context)) {
-    PTIE_TRY(ptie_alloc_status(out, ptie_fft_filter_floats(solver->fft), sizeof **out, "solver"));
-    ptie_fft_filter_fill(solver->fft, *out, solver->params.pixel_m, response, &solver->params);
-    return PTIE_OK;
-}
-
 static ptie_status copy_mask(ptie_solver *solver) {
     ptie_solver_params *p = &solver->params;
     if (!p->mask) return PTIE_OK;
@@ -80,8 +69,10 @@ static ptie_status prepare(ptie_solver *solver) {
     PTIE_TRY(ptie_fft_create(&solver->fft,
                              p->boundary == PTIE_MIRROR ? PTIE_FFT_MIRROR : PTIE_FFT_REAL,
                              p->width_px, p->height_px));
-    PTIE_TRY(make_filter(&solver->inverse, solver, inverse_response));
-    if (p->method == PTIE_SOLVE_DIRECT) return make_filter(&solver->forward, solver, forward_response);
+    PTIE_TRY(ptie_alloc_status(&solver->inverse, ptie_fft_filter_floats(solver->fft), sizeof *solver->inverse,
+                               "solver"));
+    ptie_fft_filter_fill(solver->fft, solver->inverse, p->pixel_m, inverse_response, p);
+    if (p->method == PTIE_SOLVE_DIRECT) return PTIE_OK;
     if (ptie_solver_divides_by_light(solver)) PTIE_TRY(ptie_poisson_prepare(&solver->poisson, p));
     return prepare_propagators(solver);
 }
@@ -104,7 +95,6 @@ void ptie_solver_free(ptie_solver *solver) {
     if (!solver) return;
     ptie_fft_free(solver->fft);
     ptie_free(solver->inverse);
-    ptie_free(solver->forward);
     ptie_poisson_clear(&solver->poisson);
     for (int32_t i = 0; i < PTIE_MAX_PLANES; i++) ptie_propagator_clear(&solver->propagator[i]);
     ptie_free(solver->mask);
@@ -134,14 +124,10 @@ size_t ptie_tie_scratch(const ptie_solver *solver) {
     return slicer.used;
 }
 
-static void filter_image(const ptie_solver *solver, const float *filter, float *image, float *spectrum) {
-    ptie_fft_forward(solver->fft, spectrum, image);
-    ptie_fft_filter_apply(solver->fft, spectrum, filter);
-    ptie_fft_inverse(solver->fft, image, spectrum);
-}
-
 void ptie_tie_invert(const ptie_solver *solver, float *image, float *spectrum) {
-    filter_image(solver, solver->inverse, image, spectrum);
+    ptie_fft_forward(solver->fft, spectrum, image);
+    ptie_fft_filter_apply(solver->fft, spectrum, solver->inverse);
+    ptie_fft_inverse(solver->fft, image, spectrum);
 }
 
 void ptie_tie_level(const ptie_solver *solver, float *phase_rad) {

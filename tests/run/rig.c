@@ -37,7 +37,8 @@ static void a_full_rig_is_read(void **state) {
              "[preprocess]\ndemosaic = fourier\nflat_field = no\nmatch_gain = no\nmask_below = 10 %\n"
              "background = zernike\n"
              "[flow]\npolarity = negative\nstill = 0,0,40,30\n"
-             "[solver]\nbinning = 4\nboundary = periodic\ncutoff = 3 cm\nzero_border = no\n");
+             "[solver]\nbinning = 4\nboundary = periodic\nmethod = us-tie\niterations = 7\ncutoff = 3 cm\n"
+             "zero_border = no\n");
     const ptie_plane *plus = &rig.plane[PTIE_PLUS];
     assert_true(rig.wavelength_m == 633e-9 && rig.pixel_m == 40e-6); /* at the object */
     assert_true(rig.one_plane && plus->used && !rig.plane[PTIE_MINUS].used);
@@ -58,7 +59,18 @@ static void a_full_rig_is_read(void **state) {
     assert_memory_equal(&rig.still, (&(ptie_rect){0, 0, 40, 30}), sizeof rig.still);
     assert_int_equal(rig.binning, 4);
     assert_int_equal(rig.boundary, PTIE_PERIODIC);
+    assert_true(rig.method == PTIE_SOLVE_US_TIE && rig.max_iterations == 7);
     assert_true(rig.cutoff_m == 0.03 && rig.frame_rate_hz == 25000);
+}
+
+static void a_cutoff_can_be_left_to_the_recording(void **state) {
+    (void)state;
+    assert_true(load(OPTICS "[solver]\ncutoff = auto\n").cutoff_m == PTIE_CUTOFF_AUTO);
+    assert_true(load(OPTICS "[solver]\ncutoff = l-curve\n").cutoff_m == PTIE_CUTOFF_CORNER);
+    assert_true(load(OPTICS "[solver]\ncutoff = 0\n").cutoff_m == 0);
+    ptie_rig rig;
+    assert_fails(ptie_rig_load(&rig, write_rig(OPTICS "[solver]\ncutoff = -1 m\n")), PTIE_EFORMAT,
+                 "a length such as 3 mm, 0, auto or l-curve");
 }
 
 static void defaults_and_unequal_steps(void **state) {
@@ -214,6 +226,7 @@ static void a_new_rig_has_every_key_and_loads(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_full_rig_is_read),
+        cmocka_unit_test(a_cutoff_can_be_left_to_the_recording),
         cmocka_unit_test(defaults_and_unequal_steps),
         cmocka_unit_test(every_layout_prints_as_it_reads),
         cmocka_unit_test(bad_rigs_get_one_line),

@@ -101,13 +101,17 @@ static ptie_status run_with(const setting *s, int32_t threads, ptie_run_summary 
     return status;
 }
 
-static void read_phase(float (*frames)[PIXELS], const char *path) {
+static void read_frames(float (*frames)[PIXELS], const char *path, const char *unit) {
     ptie_recording *recording;
     assert_ok(ptie_recording_open(&recording, path));
     assert_int_equal(ptie_recording_get_info(recording)->frames, FRAMES);
-    assert_string_equal(ptie_recording_get_info(recording)->unit, "rad");
+    assert_string_equal(ptie_recording_get_info(recording)->unit, unit);
     for (int t = 0; t < FRAMES; t++) assert_ok(ptie_recording_read(recording, t, frames[t]));
     ptie_recording_close(recording);
+}
+
+static void read_phase(float (*frames)[PIXELS], const char *path) {
+    read_frames(frames, path, "rad");
 }
 
 static void a_pair_gives_back_the_phase_on_any_number_of_threads(void **state) {
@@ -219,6 +223,52 @@ static void binning_solves_on_larger_pixels(void **state) {
        exp(-10 q^2) has q p < 0.5 at 2 sigma; 1 % of 0.2 rad rms, with margin 2. */
     assert_near(summary.phase.rmse_rad.mean, 0, 4e-3);
     assert_true(summary.phase.correlation.mean > 0.999);
+}
+
+/* White noise of 2 % on one plane is a cloud of 0.035 rad in the phase (M8). */
+static void a_cutoff_is_chosen_from_the_recording(void **state) {
+    (void)state;
+    static float plus[FRAMES][PIXELS];
+    setting s;
+    ptie_run_summary all, some;
+    init(&s);
+    read_frames(plus, s.plus, "");
+    for (int t = 0; t < FRAMES; t++) ptie_add_gaussian_noise(plus[t], PIXELS, 20, 3, 0, (uint64_t)t);
+    write_recording(support_temporary("noisy.npy"), plus, FRAMES);
+    snprintf(s.plus, sizeof s.plus, "%s", support_temporary("noisy.npy"));
+    assert_ok(run_with(&s, 0, &all));
+    s.rig.cutoff_m = PTIE_CUTOFF_AUTO;
+    assert_ok(run_with(&s, 0, &some));
+    assert_true(some.phase.rmse_rad.mean < 0.9 * all.phase.rmse_rad.mean);
+    assert_true(some.phase.residual.mean > 100 * all.phase.residual.mean);
+    assert_true(some.noise_rad.mean < all.noise_rad.mean);
+}
+
+static void opaque_pixels_have_no_phase(void **state) {
+    (void)state;
+    static float mask[1][PIXELS], phase[FRAMES][PIXELS], trusted[PIXELS];
+    for (int i = 0; i < PIXELS; i++) mask[0][i] = i % WIDTH < 8 && i / WIDTH < 20 ? 0 : 1;
+    write_recording(support_temporary("mask.npy"), mask, 1);
+    for (int method = PTIE_SOLVE_DIRECT; method <= PTIE_SOLVE_US_TIE; method++) {
+        setting s;
+        ptie_run_summary summary;
+        init(&s);
+        s.rig.method = (ptie_solver_method)method;
+        s.rig.max_iterations = 2;
+        snprintf(s.rig.mask, sizeof s.rig.mask, "%s", support_temporary("mask.npy"));
+        assert_ok(run_with(&s, 0, &summary));
+        read_phase(phase, s.output);
+        char path[300];
+        ptie_recording *recording;
+        snprintf(path, sizeof path, "%s:/entry/statistics/trusted", s.output);
+        assert_ok(ptie_recording_open(&recording, path));
+        assert_ok(ptie_recording_read(recording, 0, trusted));
+        ptie_recording_close(recording);
+        for (int i = 0; i < PIXELS; i++)
+            if (mask[0][i] == 0) assert_true(phase[3][i] == 0 && trusted[i] == 0);
+        assert_true(trusted[25 * WIDTH + 30] == 1 && trusted[3] == 0);
+        assert_true(summary.phase.residual.mean < 1);
+    }
 }
 
 static void regions_can_be_given(void **state) {
@@ -428,6 +478,8 @@ int main(void) {
         cmocka_unit_test(the_border_is_zero_and_a_subset_is_the_same),
         cmocka_unit_test(one_plane_with_a_reference_gives_the_same_phase),
         cmocka_unit_test(binning_solves_on_larger_pixels),
+        cmocka_unit_test(a_cutoff_is_chosen_from_the_recording),
+        cmocka_unit_test(opaque_pixels_have_no_phase),
         cmocka_unit_test(regions_can_be_given),
         cmocka_unit_test(a_model_of_other_inputs_is_refused),
         cmocka_unit_test(an_output_is_never_an_input),
