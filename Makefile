@@ -5,12 +5,13 @@
 #   make test     every test; the last line counts them
 #   make levels   the tests again with every kernel level of this machine forced
 #   make sanitize the tests again under ASan + UBSan, then TSan (longer)
+#   make kills    a run of 20,000 frames, killed five times and resumed
 #   make fuzz     every reader against damaged files, one minute each (clang); see tools/fuzz
 
 BUILD ?= build
 MESON_FLAGS ?=
 
-.PHONY: all demo test levels sanitize fuzz clean
+.PHONY: all demo test levels sanitize kills fuzz clean
 all: $(BUILD)/build.ninja
 	@ninja -C $(BUILD)
 
@@ -36,6 +37,9 @@ levels: test-dependencies all
 
 sanitize: test-dependencies
 	@tools/sanitize
+
+kills: all
+	@tests/cli/kills $(BUILD)/ptie 20000 5 128
 
 fuzz: dependencies
 	@tools/fuzz

@@ -25,6 +25,7 @@ int evaluate_command(int argc, char **argv);
 int reconstruct_command(int argc, char **argv);
 int denoise_command(int argc, char **argv);
 int run_command(int argc, char **argv);
+int report_command(int argc, char **argv);
 int prepare_command(int argc, char **argv);
 int rig_command(int argc, char **argv);
 int metrics_command(int argc, char **argv);

@@ -18,6 +18,7 @@ static const command commands[] = {
     {"reconstruct", "recording -> phase", reconstruct_command},
     {"denoise", "phase -> denoised phase", denoise_command},
     {"run", "recording -> phase -> denoised phase -> metrics, in one pass", run_command},
+    {"report", "the result of a run as one page: maps, metrics, noise, parameters", report_command},
     {"metrics", "MGM, SBR, BNS and CNR over frames and regions", metrics_command},
     {"convert", "a recording as another kind of file, or a part of it", convert_command},
     {"prepare", "recording -> planes, as the solver sees them or after any step", prepare_command},

@@ -2,6 +2,8 @@
 /* ptie run and ptie reconstruct: the pipeline, with and without a model. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "cli.h"
 #include "json.h"
@@ -38,11 +40,28 @@ typedef struct settings {
     compute_options compute;
     ptie_run_params params;
     const char *rig_path, *model_path, *figure;
+    const char *report;                /* as given: NULL, or "none" */
+    char report_path[PATH_BYTES];      /* "" for none */
     int64_t figure_frame; /* of those processed; -1: the middle */
     bool json;
     ptie_rig rig;
     char *provenance;
 } settings;
+
+/* Beside the output unless it is named; found out before long work whether it can be written. */
+static int choose_report(settings *s, const char *name, bool with_model) {
+    const char *given = s->report;
+    if (given && strcmp(given, "none") != 0 && !ends_in(given, ".html"))
+        return misused("%s: --report: expected a name ending in .html or 'none', found '%s'", name, given);
+    if (given ? strcmp(given, "none") == 0 : !with_model) return GO_ON;
+    if (given)
+        snprintf(s->report_path, sizeof s->report_path, "%s", given);
+    else if (!replace_ending(s->report_path, sizeof s->report_path, s->params.output, ".html"))
+        return misused("%s: --output: path too long", name);
+    if (s->compute.force || access(s->report_path, F_OK) != 0) return GO_ON;
+    say("ptie: %s: exists already (use -f to overwrite)", s->report_path);
+    return FAILED;
+}
 
 static int check(settings *s, const char *name, bool with_model) {
     ptie_run_params *p = &s->params;
@@ -58,7 +77,8 @@ static int check(settings *s, const char *name, bool with_model) {
     if (!p->jet.width_px != !p->background.width_px)
         return misused("%s: --jet and --background belong together", name);
     p->overwrite = s->compute.force;
-    return check_figure(s->figure, s->compute.force);
+    const int code = choose_report(s, name, with_model);
+    return code == GO_ON ? check_figure(s->figure, s->compute.force) : code;
 }
 
 static int parse(settings *s, const char *name, bool with_model, int argc, char **argv) {
@@ -86,6 +106,8 @@ static int parse(settings *s, const char *name, bool with_model, int argc, char 
          .help = "region without flow; if no regions are given, they are proposed from the result"},
         {0, "metrics", OPTION_TEXT, &p->metrics_csv, "FILE",
          .help = "metrics of every frame as a table (.csv)"},
+        {0, "report", OPTION_TEXT, &s->report, "FILE",
+         .help = "page to draw at the end (.html), or 'none'; run draws one beside the output"},
         {0, "figure", OPTION_TEXT, &s->figure, "FILE",
          .help = "draw a frame: intensity and phase (.png or .svg)"},
         {0, "figure-frame", OPTION_INT64, &s->figure_frame, "N", .low = -1, .high = INT64_MAX,
@@ -177,6 +199,8 @@ static ptie_status compute_run(settings *s, const char *name, ptie_run_summary *
     }
     tell(s, status, summary);
     if (status == PTIE_OK && s->figure) status = draw(s, summary);
+    if (status == PTIE_OK && s->report_path[0])
+        status = ptie_report_write(s->report_path, s->params.output, s->compute.force);
     if (status == PTIE_OK) print_summary(s, summary);
     ptie_ctx_free(ctx);
     ptie_model_free(model);

@@ -34,6 +34,7 @@
 #include <ptie/prepare.h>
 #include <ptie/preprocess.h>
 #include <ptie/recording.h>
+#include <ptie/report.h>
 #include <ptie/rig.h>
 #include <ptie/run.h>
 #include <ptie/simulate.h>

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Argument checks of ptie/figure.h. */
+/* Argument checks of ptie/figure.h and ptie/report.h. */
 #include <ptie/figure.h>
 
 #include <math.h>
 
+#include <ptie/report.h>
+
 #include "api/params.h"
 #include "report/report.h"
+#include "report/run_report.h"
 
 #define MOST_PANELS 4096
 #define MOST_AXES 26 /* they are lettered */
@@ -92,4 +95,10 @@ ptie_status ptie_figure_curves(const char *path, const ptie_axes *axes, int32_t 
     PTIE_TRY(check_text(title, where, "title"));
     for (int32_t i = 0; i < count; i++) PTIE_TRY(check_axes(&axes[i], where));
     return ptie_draw_curves(path, axes, count, title, width_mm, overwrite);
+}
+
+ptie_status ptie_report_write(const char *html, const char *result, bool overwrite) {
+    PTIE_TRY(ptie_check_pointer(html, "ptie_report_write", "html"));
+    PTIE_TRY(ptie_check_pointer(result, "ptie_report_write", "result"));
+    return ptie_draw_report(html, result, overwrite);
 }

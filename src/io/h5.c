@@ -80,19 +80,6 @@ static ptie_status written(const ptie_h5 *h5, bool done, const char *what, const
     return done && h5->failure == 0 ? PTIE_OK : h5_failure(h5, PTIE_EIO, what, object);
 }
 
-static hid_t memory_type(ptie_h5_type type) {
-    switch (type) {
-    case PTIE_H5_F32: return H5T_NATIVE_FLOAT;
-    case PTIE_H5_F64: return H5T_NATIVE_DOUBLE;
-    case PTIE_H5_U8: return H5T_NATIVE_UINT8;
-    case PTIE_H5_U16: return H5T_NATIVE_UINT16;
-    case PTIE_H5_U32: return H5T_NATIVE_UINT32;
-    case PTIE_H5_U64: return H5T_NATIVE_UINT64;
-    case PTIE_H5_LINE: break; /* written in place only */
-    }
-    return H5I_INVALID_HID;
-}
-
 static hid_t line_type(void) {
     hid_t type = H5Tcopy(H5T_C_S1);
     H5Tset_size(type, PTIE_H5_LINE_BYTES);
@@ -101,7 +88,20 @@ static hid_t line_type(void) {
     return type;
 }
 
-/* To be closed. */
+/* Both to be closed. */
+static hid_t memory_type(ptie_h5_type type) {
+    switch (type) {
+    case PTIE_H5_F32: return H5Tcopy(H5T_NATIVE_FLOAT);
+    case PTIE_H5_F64: return H5Tcopy(H5T_NATIVE_DOUBLE);
+    case PTIE_H5_U8: return H5Tcopy(H5T_NATIVE_UINT8);
+    case PTIE_H5_U16: return H5Tcopy(H5T_NATIVE_UINT16);
+    case PTIE_H5_U32: return H5Tcopy(H5T_NATIVE_UINT32);
+    case PTIE_H5_U64: return H5Tcopy(H5T_NATIVE_UINT64);
+    case PTIE_H5_LINE: return line_type();
+    }
+    return H5I_INVALID_HID;
+}
+
 static hid_t stored_type(ptie_h5_type type) {
     switch (type) {
     case PTIE_H5_F32: return H5Tcopy(H5T_IEEE_F32LE);
@@ -353,7 +353,8 @@ ptie_status ptie_h5_write(ptie_h5 *h5, const char *path, ptie_h5_type type, uint
     PTIE_TRY(open_set(h5, path, &set));
     PTIE_TRY(grow(h5, path, set, first + count));
     PTIE_TRY(select_rows(h5, path, set, (rows){first, count}, &file_space, &memory_space));
-    herr_t result = H5Dwrite(set, memory_type(type), memory_space, file_space, H5P_DEFAULT, data);
+    SCOPED_ID memory = memory_type(type);
+    herr_t result = H5Dwrite(set, memory, memory_space, file_space, H5P_DEFAULT, data);
     return written(h5, result >= 0, "write", path);
 }
 
@@ -396,7 +397,8 @@ ptie_status ptie_h5_read(ptie_h5 *h5, const char *path, ptie_h5_type type, uint6
     SCOPED_ID file_space = H5I_INVALID_HID, memory_space = H5I_INVALID_HID;
     PTIE_TRY(open_last(h5, path));
     PTIE_TRY(select_rows(h5, path, h5->last, (rows){first, count}, &file_space, &memory_space));
-    if (H5Dread(h5->last, memory_type(type), memory_space, file_space, H5P_DEFAULT, data) < 0)
+    SCOPED_ID memory = memory_type(type);
+    if (H5Dread(h5->last, memory, memory_space, file_space, H5P_DEFAULT, data) < 0)
         return h5_failure(h5, PTIE_EFORMAT, "read", path);
     return PTIE_OK;
 }

@@ -9,8 +9,11 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "run/planes.h"
 #include "run/rig.h"
 #include "run/run.h"
+#include "tie/derivative.h"
+#include "tie/solver.h"
 
 #define METRICS "/entry/metrics"
 #define PROCESS PTIE_NEXUS_PROCESS
@@ -54,10 +57,27 @@ static void column_path(char path[96], int which) {
 
 /* --- structure ------------------------------------------------------------------------------------ */
 
+/* What white noise of relative deviation 1 in each plane makes of the phase: its deviation over the frame, and the
+   power spectral density at 1 rad/m, from where it falls with q^-4 (docs/math.md M8). */
+static ptie_status write_noise(ptie_h5 *h5, const ptie_rig *rig, const ptie_nexus_axes *axes) {
+    const ptie_solver_params params = ptie_rig_solver(rig, axes->width_px, axes->height_px);
+    const double k_p = 2 * acos(-1) / params.wavelength_m * params.pixel_m;
+    ptie_tie_weights weights;
+    ptie_solver *solver;
+    PTIE_TRY(ptie_tie_weigh(&weights, &params));
+    PTIE_TRY(ptie_tie_plan(&solver, &params));
+    const double noise_rad = ptie_tie_noise_rad(solver, 1);
+    ptie_solver_free(solver);
+    PTIE_TRY(ptie_h5_set_number(h5, PROCESS, "noise_rad_per_sigma", noise_rad));
+    return ptie_h5_set_number(h5, PROCESS, "noise_density_per_sigma2", k_p * k_p * ptie_tie_noise_gain(&weights));
+}
+
 /* NeXus NXprocess: everything that decided the result. */
-static ptie_status write_process(ptie_h5 *h5, const ptie_run_params *params, const char *settings) {
+static ptie_status write_process(ptie_h5 *h5, const ptie_run_params *params, const ptie_nexus_axes *axes,
+                                 const char *settings) {
     PTIE_TRY(ptie_nexus_process(h5, ptie_run_name(params), params->provenance));
     PTIE_TRY(ptie_h5_set_text(h5, PROCESS, SETTINGS, settings));
+    PTIE_TRY(write_noise(h5, params->rig, axes));
     if (params->model) PTIE_TRY(ptie_h5_set_text(h5, PROCESS, "model", ptie_model_name(params->model)));
     char *rig = ptie_rig_print(params->rig);
     if (!rig) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", params->output);
@@ -101,7 +121,7 @@ static ptie_status make_structure(const ptie_result *r, ptie_h5 *h5, const ptie_
     /* The best map comes first: it is what viewers show. */
     const ptie_nexus_signal signals[] = {r->denoised ? denoised : phase, phase};
     PTIE_TRY(ptie_nexus_begin(h5, axes, signals, r->denoised ? 2 : 1));
-    PTIE_TRY(write_process(h5, params, settings));
+    PTIE_TRY(write_process(h5, params, axes, settings));
     for (int i = 0; i < PTIE_RESULT_FIELDS; i++)
         if (has_field(r, i)) PTIE_TRY(make_field(h5, i, axes));
     for (int i = 0; i < PTIE_ROW; i++)

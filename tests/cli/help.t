@@ -14,6 +14,7 @@ The overview
     reconstruct  recording -> phase
     denoise      phase -> denoised phase
     run          recording -> phase -> denoised phase -> metrics, in one pass
+    report       the result of a run as one page: maps, metrics, noise, parameters
     metrics      MGM, SBR, BNS and CNR over frames and regions
     convert      a recording as another kind of file, or a part of it
     prepare      recording -> planes, as the solver sees them or after any step
@@ -36,15 +37,22 @@ simulate
     ptie simulate shock -o shock.h5 --family physical \
         --propagation angular-spectrum --boundary mirror
   
+    # what a polarisation camera would have written: MRAW, with a no-flow and a
+    # dark recording, the truth and the rig beside it
+    ptie simulate jet -o lab.mraw --family physical --size 512 \
+        --propagation angular-spectrum --boundary mirror \
+        --camera examples/camera.ini
+  
     # every flow there is, as one figure
     ptie simulate --gallery gallery.png
   
   Usage:
-    ptie simulate MORPHOLOGY -o FILE.h5 [options]
+    ptie simulate MORPHOLOGY -o FILE [options]
     ptie simulate --gallery FILE.png [options]
   
   Options:
-    -o, --output FILE         recording to write (.h5)
+    -o, --output FILE         recording to write (.h5; from a mosaic also .mraw
+                              and others)
         --rig-out FILE        rig file to write; if not given, beside the
                               recording (.ini)
         --gallery FILE        draw every morphology of both families instead
@@ -54,6 +62,12 @@ simulate
         --size N or WxH       frame size in pixels (default: 256x256)
         --noise SHARE         standard deviation of the camera noise, relative to
                               the mean intensity (default: 0.05)
+        --camera FILE         camera file (.ini): counts instead of intensities;
+                              --noise does not count then
+        --reference-frames N  with --camera: frames of the no-flow recording
+                              (default: 32)
+        --dark-frames N       with --camera: frames of the dark recording
+                              (default: 32)
         --family NAME         kind of flow model (parametric, physical; default:
                               parametric)
         --amplitude ANGLE     height of the phase; 0: 1 rad for parametric flows,
@@ -79,6 +93,10 @@ simulate
   
   The recording holds /entry/data/plus and /entry/data/minus (intensity relative
   to its mean) and /entry/truth/phase (rad).
+  
+  With --camera it holds counts, in the format of FILE's ending if the camera has
+  a mosaic. Beside it: FILE_reference and FILE_dark, FILE_truth.h5, the rig as a
+  lab knows it and, as FILE_true.ini, as a perfect calibration would find it.
 
 dataset
   $ ptie dataset --help
@@ -243,6 +261,8 @@ reconstruct
         --background x,y,w,h  region without flow; if no regions are given, they
                               are proposed from the result
         --metrics FILE        metrics of every frame as a table (.csv)
+        --report FILE         page to draw at the end (.html), or 'none'; run
+                              draws one beside the output
         --figure FILE         draw a frame: intensity and phase (.png or .svg)
         --figure-frame N      which of the frames processed; -1 = the middle one
                               (default: -1)
@@ -336,6 +356,8 @@ run
         --background x,y,w,h  region without flow; if no regions are given, they
                               are proposed from the result
         --metrics FILE        metrics of every frame as a table (.csv)
+        --report FILE         page to draw at the end (.html), or 'none'; run
+                              draws one beside the output
         --figure FILE         draw a frame: intensity and phase (.png or .svg)
         --figure-frame N      which of the frames processed; -1 = the middle one
                               (default: -1)

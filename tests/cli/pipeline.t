@@ -109,6 +109,7 @@ Simulate, train, evaluate, run, denoise, measure
   m.safetensors.last
   metrics.png
   phase.h5
+  phase.html
 
 The summary of a run and the metrics agree
   $ ptie simulate jet -o jet.h5 --size 64 --frames 3
