@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "tie/plan.h"
+#include "tie/inner.h"
 
 int32_t ptie_tie_reach(const ptie_solver_params *p) {
     double furthest = 0;

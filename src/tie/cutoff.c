@@ -3,7 +3,7 @@
  * docs/math.md (M15), (M16). */
 #include <math.h>
 
-#include "tie/plan.h"
+#include "tie/inner.h"
 
 #define TWO_PI 6.283185307179586476925
 

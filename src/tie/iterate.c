@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "tie/plan.h"
+#include "tie/inner.h"
 
 #define ENOUGH 1e-3 /* of the largest dI/dz left: done */
 #define WORSE 1.05  /* largest left grows by this from step to step: noise, or divergence */

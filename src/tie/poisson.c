@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "tie/plan.h"
+#include "tie/inner.h"
 
 #define TWO_PI 6.283185307179586476925
 

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "tie/plan.h"
+#include "tie/inner.h"
 
 #define TWO_PI 6.283185307179586476925
 

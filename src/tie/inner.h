@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A solver's inside, for the files of this folder. */
-#ifndef PTIE_TIE_PLAN_H
-#define PTIE_TIE_PLAN_H
+#ifndef PTIE_TIE_INNER_H
+#define PTIE_TIE_INNER_H
 
 #include "fft/propagate.h"
 #include "tie/derivative.h"
