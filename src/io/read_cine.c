@@ -124,7 +124,7 @@ static void take_camera(ptie_recording_info *info, const ptie_cine *cine) {
     else if (cine->camera_version > 0)
         snprintf(model, sizeof model, "Phantom version %lld", (long long)cine->camera_version);
     if (cine->serial > 0)
-        snprintf(info->camera, sizeof info->camera, "%.40s, serial %lld", model, (long long)cine->serial);
+        snprintf(info->camera, sizeof info->camera, "%.40s, serial %u", model, (unsigned)cine->serial);
     else
         memcpy(info->camera, model, sizeof info->camera);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* HDF5: a data set [H, W] or [T, H, W] of any numeric type, named or found. */
+/* HDF5: a data set [H, W] or [T, H, W] of any numeric type, named or found; MATLAB's v7.3 files are HDF5, too. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,16 +7,20 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "io/detector.h"
+#include "io/input.h"
 #include "io/nexus.h"
 #include "io/reader.h"
+#include "io/transpose.h"
 
 #define PATH_BYTES sizeof((ptie_recording_info){0}.dataset)
 #define LONGEST_CHAIN 8 /* of @default attributes */
 
 typedef struct h5_recording {
     ptie_h5 *h5;
-    int32_t rank, height;
+    int32_t rank, width, height;
     char dataset[PATH_BYTES];
+    bool matlab;    /* a MAT file (v7.3): arrays are stored by columns, [T, W, H] */
+    float *columns; /* then: one frame as stored */
 } h5_recording;
 
 /* The signature is at 0, or behind a user block of 512, 1024, ... bytes. */
@@ -30,6 +34,7 @@ static void h5_close(void *state) {
     h5_recording *recording = state;
     if (!recording) return;
     ptie_h5_discard(recording->h5);
+    ptie_free(recording->columns);
     ptie_free(recording);
 }
 
@@ -69,23 +74,36 @@ static bool find_default(ptie_h5 *h5, char path[PATH_BYTES]) {
     return false;
 }
 
+/* An image among MATLAB's variables: no scalar or vector, no text, no part of another variable (/#refs#). */
+static bool is_matlab_image(ptie_h5 *h5, const char *path) {
+    int32_t rank;
+    uint64_t dims[4];
+    char *class;
+    if (path[1] == '#' || ptie_h5_shape(h5, path, &rank, dims) != PTIE_OK) return false;
+    if (ptie_h5_get_text(h5, path, "MATLAB_class", &class) != PTIE_OK) return false;
+    const bool text = strcmp(class, "char") == 0;
+    ptie_free(class);
+    return !text && dims[rank - 1] > 1 && dims[rank - 2] > 1;
+}
+
 /* Keeps of `lines` those that are recordings; returns how many. */
-static size_t keep_recordings(ptie_h5 *h5, char *lines, ptie_text *kept) {
+static size_t keep_recordings(const h5_recording *recording, char *lines, ptie_text *kept) {
+    ptie_h5 *h5 = recording->h5;
     size_t count = 0;
     char *rest = NULL;
     for (char *path = strtok_r(lines, "\n", &rest); path; path = strtok_r(NULL, "\n", &rest)) {
-        if (!is_recording(h5, path)) continue;
+        if (!is_recording(h5, path) || (recording->matlab && !is_matlab_image(h5, path))) continue;
         ptie_text_append(kept, "%s%s", count ? ", " : "", path);
         count++;
     }
     return count;
 }
 
-static ptie_status find_only(ptie_h5 *h5, const char *file, char path[PATH_BYTES]) {
+static ptie_status find_only(const h5_recording *recording, const char *file, char path[PATH_BYTES]) {
     ptie_text lines = {0}, kept = {0};
-    ptie_status status = ptie_h5_list(h5, &lines);
+    ptie_status status = ptie_h5_list(recording->h5, &lines);
     if (status == PTIE_OK) {
-        size_t count = lines.data ? keep_recordings(h5, lines.data, &kept) : 0;
+        size_t count = lines.data ? keep_recordings(recording, lines.data, &kept) : 0;
         if (count == 1)
             snprintf(path, PATH_BYTES, "%s", kept.data);
         else if (count == 0)
@@ -107,7 +125,7 @@ static ptie_status find_data_set(h5_recording *recording, const char *file, cons
     if (*inside)
         memcpy(recording->dataset, inside, strlen(inside));
     else if (!find_default(recording->h5, recording->dataset))
-        return find_only(recording->h5, file, recording->dataset);
+        return find_only(recording, file, recording->dataset);
     return PTIE_OK;
 }
 
@@ -119,11 +137,13 @@ static ptie_status take_shape(h5_recording *recording, ptie_recording_info *info
     if (rank != 2 && rank != 3)
         return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: %s has %d dimensions (expected 2 or 3)", file,
                          recording->dataset, rank);
-    PTIE_TRY(ptie_info_set_size(info, file, dims[rank - 1], dims[rank - 2]));
+    const uint64_t last = dims[rank - 1], before = dims[rank - 2];
+    PTIE_TRY(ptie_info_set_size(info, file, recording->matlab ? before : last, recording->matlab ? last : before));
     uint64_t frames = rank == 3 ? dims[0] : 1;
     if (frames < 1 || frames > INT64_MAX)
         return PTIE_FAIL(PTIE_EFORMAT, "%s: %s has no frames", file, recording->dataset);
     info->frames = (int64_t)frames;
+    recording->width = info->width_px;
     recording->height = info->height_px;
     return ptie_h5_sample(recording->h5, recording->dataset, info->sample);
 }
@@ -178,6 +198,11 @@ static void take_units(const h5_recording *recording, ptie_recording_info *info)
 
 static ptie_status h5_load(h5_recording *recording, ptie_recording_info *info, const char *path,
                            const char *inside) {
+    static const char matlab[] = "MATLAB 7.3";
+    unsigned char head[sizeof matlab - 1];
+    PTIE_TRY(ptie_input_head(path, head, sizeof head));
+    recording->matlab = memcmp(head, matlab, sizeof head) == 0;
+    if (recording->matlab) memcpy(info->format, "MAT 7.3", sizeof "MAT 7.3");
     PTIE_TRY(ptie_h5_open(&recording->h5, path));
     PTIE_TRY(find_data_set(recording, path, inside));
     PTIE_TRY(take_shape(recording, info, path));
@@ -199,10 +224,22 @@ static ptie_status h5_open(void **state, ptie_recording_info *info, const char *
     return status;
 }
 
+static ptie_status read_columns(h5_recording *recording, int64_t frame, float *data) {
+    const size_t width = (size_t)recording->width, height = (size_t)recording->height;
+    const bool stack = recording->rank == 3;
+    if (!recording->columns)
+        PTIE_TRY(ptie_alloc_status(&recording->columns, width * height, sizeof *data, recording->dataset));
+    PTIE_TRY(ptie_h5_read(recording->h5, recording->dataset, PTIE_H5_F32, stack ? (uint64_t)frame : 0,
+                          stack ? 1 : width, recording->columns));
+    ptie_transpose(data, recording->columns, height, width);
+    return PTIE_OK;
+}
+
 static ptie_status h5_read(void *state, int64_t frame, float *data) {
     h5_recording *recording = state;
     uint64_t first = recording->rank == 3 ? (uint64_t)frame : 0;
     uint64_t rows = recording->rank == 3 ? 1 : (uint64_t)recording->height;
+    if (recording->matlab) return read_columns(recording, frame, data);
     return ptie_h5_read(recording->h5, recording->dataset, PTIE_H5_F32, first, rows, data);
 }
 

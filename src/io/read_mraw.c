@@ -126,7 +126,7 @@ static double exposure_of(const ptie_cih *cih) {
     double number;
     if (cih->exposure_ns > 0) return cih->exposure_ns / 1e9;
     if (ptie_parse_quantity(slash ? slash + 1 : cih->shutter, PTIE_NUMBER, &number)) return 0;
-    return number > 0 ? 1 / number : 0;
+    return number > 1e-9 ? 1 / number : 0;
 }
 
 static void take_facts(ptie_recording_info *info, const ptie_cih *cih) {

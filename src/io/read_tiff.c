@@ -3,11 +3,11 @@
 #include <string.h>
 #include <tiffio.h>
 
-#include "base/text.h"
 #include "io/array.h"
 #include "io/input.h"
+#include "io/raster.h"
 #include "io/reader.h"
-#include "io/sample.h"
+#include "io/tiff_notes.h"
 
 /* The densest codec (Zstandard) codes a block of 128 KiB in 4 bytes. */
 #define DENSEST 32768
@@ -24,6 +24,9 @@ typedef struct tiff_stack {
     int32_t width, height;
     ptie_sample sample;
     char message[128]; /* libtiff's first complaint */
+    FILE *images;         /* of a stack behind one page, else NULL: */
+    ptie_raster raster;
+    uint64_t first_image; /* where it begins */
 } tiff_stack;
 
 static bool tiff_probe(const unsigned char *head) {
@@ -59,6 +62,7 @@ static void tiff_close(void *state) {
     tiff_stack *stack = state;
     if (!stack) return;
     if (stack->tiff) TIFFClose(stack->tiff);
+    if (stack->images) fclose(stack->images);
     ptie_free(stack->pages);
     ptie_free(stack->path);
     ptie_free(stack);
@@ -181,52 +185,38 @@ static ptie_status list_pages(tiff_stack *stack, ptie_recording_info *info) {
     return PTIE_OK;
 }
 
-/* The rest of the line "key=..." of ImageJ's description, or false. */
-static bool description_value(const char *text, const char *key, char value[32]) {
-    size_t length = strlen(key);
-    for (; text; text = strchr(text, '\n')) {
-        text += *text == '\n';
-        if (strncmp(text, key, length) != 0 || text[length] != '=') continue;
-        snprintf(value, 32, "%.*s", (int)strcspn(text + length + 1, "\r\n"), text + length + 1);
-        return true;
-    }
-    return false;
+/* A stack of ImageJ's above 4 GiB: the first image has a directory, the others follow it. */
+static ptie_status take_images(tiff_stack *stack, ptie_recording_info *info, int64_t images) {
+    uint64_t *offsets = NULL;
+    if (TIFFIsTiled(stack->tiff) || tag16(stack->tiff, TIFFTAG_COMPRESSION) != COMPRESSION_NONE ||
+        !TIFFGetField(stack->tiff, TIFFTAG_STRIPOFFSETS, &offsets) || !offsets)
+        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: stack of %lld images behind one compressed page", stack->path,
+                         (long long)images);
+    stack->raster = (ptie_raster){.width = stack->width,
+                                  .height = stack->height,
+                                  .sample = stack->sample,
+                                  .swapped = TIFFIsByteSwapped(stack->tiff)};
+    const uint64_t frame_bytes = ptie_raster_bytes(&stack->raster);
+    stack->first_image = offsets[0];
+    if (stack->first_image > stack->file_bytes) return damaged(stack, 0);
+    PTIE_TRY(ptie_check_fits(stack->path, frame_bytes, stack->file_bytes - stack->first_image, 1));
+    const int64_t there = (int64_t)((stack->file_bytes - stack->first_image) / frame_bytes);
+    info->recorded = images;
+    info->frames = there < images ? there : images;
+    if (there < images)
+        snprintf(info->warning, sizeof info->warning, "file is cut short: %lld of %lld frames are there",
+                 (long long)there, (long long)images);
+    return ptie_input_open(&stack->images, stack->path, NULL);
 }
 
-/* Metres in one unit of the ImageJ scale; 0 if it is no length. */
-static double unit_m(const char *unit) {
-    char text[40];
-    double length;
-    bool micron = strncmp(unit, "micron", 6) == 0 || strcmp(unit, "\\u00B5m") == 0;
-    snprintf(text, sizeof text, "1 %s", micron ? "um" : unit);
-    return ptie_parse_quantity(text, PTIE_LENGTH, &length) ? 0 : length;
-}
-
-/* Scale, rate and unit as ImageJ describes them in the first page. */
+/* What the first page says of the stack. */
 static ptie_status take_description(tiff_stack *stack, ptie_recording_info *info) {
     char *text = NULL;
-    char value[32];
     float per_unit = 0;
-    double number;
-    if (!TIFFGetField(stack->tiff, TIFFTAG_IMAGEDESCRIPTION, &text) ||
-        strncmp(text, "ImageJ=", 7) != 0)
-        return PTIE_OK;
-    int64_t images;
-    if (stack->page_count == 1 && description_value(text, "images", value) &&
-        ptie_parse_integer(value, 2, INT64_MAX, &images))
-        return PTIE_FAIL(
-            PTIE_EUNSUPPORTED,
-            "%s: ImageJ stack of %lld images behind one page (save it as BigTIFF or HDF5)",
-            stack->path, (long long)images);
-    if (description_value(text, "unit", value) &&
-        TIFFGetField(stack->tiff, TIFFTAG_XRESOLUTION, &per_unit) && per_unit > 0)
-        info->pixel_m = unit_m(value) / (double)per_unit;
-    if (description_value(text, "finterval", value) &&
-        !ptie_parse_quantity(value, PTIE_NUMBER, &number) && number > 0)
-        info->frame_rate_hz = 1 / number;
-    if (description_value(text, "vunit", value))
-        snprintf(info->unit, sizeof info->unit, "%.15s", value);
-    return PTIE_OK;
+    if (!TIFFGetField(stack->tiff, TIFFTAG_IMAGEDESCRIPTION, &text)) return PTIE_OK;
+    if (!TIFFGetField(stack->tiff, TIFFTAG_XRESOLUTION, &per_unit)) per_unit = 0;
+    const int64_t images = ptie_tiff_notes(info, text, (double)per_unit);
+    return stack->page_count == 1 && images > 1 ? take_images(stack, info, images) : PTIE_OK;
 }
 
 static ptie_status go_to_page(tiff_stack *stack, int64_t page) {
@@ -304,6 +294,10 @@ static ptie_status read_tiles(tiff_stack *stack, int64_t frame, float *data, uns
 static ptie_status tiff_read(void *state, int64_t frame, float *data) {
     tiff_stack *stack = state;
     unsigned char *buffer; /* one row or one tile */
+    if (stack->images)
+        return ptie_raster_read(&stack->raster, stack->images,
+                                stack->first_image + (uint64_t)frame * ptie_raster_bytes(&stack->raster), data,
+                                stack->path, frame);
     PTIE_TRY(go_to_page(stack, frame));
     bool tiled = TIFFIsTiled(stack->tiff);
     tmsize_t bytes = tiled ? TIFFTileSize(stack->tiff) : TIFFScanlineSize(stack->tiff);

@@ -29,8 +29,8 @@ typedef struct ptie_reader {
     bool takes_inside;          /* `inside` may be other than "" */
 } ptie_reader;
 
-extern const ptie_reader ptie_read_sequence, ptie_read_mraw, ptie_read_cine, ptie_read_npy, ptie_read_png,
-    ptie_read_tiff, ptie_read_h5;
+extern const ptie_reader ptie_read_sequence, ptie_read_mraw, ptie_read_raw, ptie_read_cine,
+    ptie_read_npy, ptie_read_png, ptie_read_tiff, ptie_read_h5, ptie_read_mat;
 
 /* Stores a frame size that was read from a file: 1 .. PTIE_LONGEST_SIDE px each. */
 ptie_status ptie_info_set_size(ptie_recording_info *info, const char *path, uint64_t width,

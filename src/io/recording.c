@@ -60,9 +60,9 @@ static bool is_kind(const ptie_reader *reader, const char *path, const unsigned 
 
 /* NULL if there is none. */
 static const ptie_reader *choose(const char *path, const unsigned char *head) {
-    static const ptie_reader *const readers[] = {&ptie_read_sequence, &ptie_read_mraw, &ptie_read_cine,
-                                                 &ptie_read_npy,      &ptie_read_png,  &ptie_read_tiff,
-                                                 &ptie_read_h5};
+    static const ptie_reader *const readers[] = {
+        &ptie_read_sequence, &ptie_read_mraw, &ptie_read_raw, &ptie_read_cine, &ptie_read_npy,
+        &ptie_read_png,      &ptie_read_tiff, &ptie_read_h5,  &ptie_read_mat};
     for (size_t i = 0; i < sizeof readers / sizeof *readers; i++)
         if (is_kind(readers[i], path, head)) return readers[i];
     return NULL;
