@@ -3,6 +3,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "json.h"
@@ -28,6 +29,17 @@ void add_number(facts *f, const char *name, double number, const char *format, .
     va_end(arguments);
     f->fact[f->count - 1].number = number;
     f->fact[f->count - 1].is_number = true;
+}
+
+const char *rounded_quantity(char text[PTIE_QUANTITY_BYTES], double value, ptie_quantity quantity) {
+    char digits[32];
+    snprintf(digits, sizeof digits, "%.5g", value);
+    return ptie_print_quantity(text, strtod(digits, NULL), quantity);
+}
+
+void add_quantity(facts *f, const char *name, double value, ptie_quantity quantity) {
+    char text[PTIE_QUANTITY_BYTES];
+    add_number(f, name, value, "%s", rounded_quantity(text, value, quantity));
 }
 
 static void print_json(const facts *f) {

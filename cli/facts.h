@@ -3,7 +3,7 @@
 #ifndef CLI_FACTS_H
 #define CLI_FACTS_H
 
-#include <ptie/export.h>
+#include <ptie/text.h>
 
 enum { MOST_FACTS = 32, FACT_BYTES = 1024 };
 
@@ -21,6 +21,10 @@ void add_text(facts *facts, const char *name, const char *format, ...) PTIE_PRIN
 /* `format` is what people read; programs get the number. */
 void add_number(facts *facts, const char *name, double number, const char *format, ...)
     PTIE_PRINTF(4, 5);
+/* With the digits that people care about: 25 kHz, not 24.999999999999996 kHz. */
+const char *rounded_quantity(char text[PTIE_QUANTITY_BYTES], double value, ptie_quantity quantity);
+/* The same as a fact; programs get all digits. */
+void add_quantity(facts *facts, const char *name, double value, ptie_quantity quantity);
 void print_facts(const facts *facts, bool json);
 
 /* "29,777" */

@@ -7,18 +7,13 @@
 #include "cli.h"
 #include "facts.h"
 #include "json.h"
+#include "recording_facts.h"
 
 static const char examples[] = "  ptie info                            # this machine\n"
                                "  ptie info models/paper.safetensors   # a model\n"
                                "  ptie info jet.h5:/entry/data/plus    # a recording\n"
+                               "  ptie info shot.mraw --json           # one of a camera, for a program\n"
                                "  ptie info paper > mine.ini           # a preset, to edit\n";
-
-/* With the digits that people care about: 25 kHz, not 24.999999999999996 kHz. */
-static void add_quantity(facts *f, const char *name, double value, ptie_quantity quantity) {
-    char digits[32], text[PTIE_QUANTITY_BYTES];
-    snprintf(digits, sizeof digits, "%.6g", value);
-    add_number(f, name, value, "%s", ptie_print_quantity(text, strtod(digits, NULL), quantity));
-}
 
 /* "a, b, c" */
 static void add_names(facts *f, const char *name, const char *(*name_of)(int32_t which)) {
@@ -105,46 +100,6 @@ static ptie_status describe_dataset(facts *f, const char *path) {
     return PTIE_OK;
 }
 
-/* Range and mean of the first frame. */
-static ptie_status describe_values(facts *f, ptie_recording *recording) {
-    const ptie_recording_info *info = ptie_recording_get_info(recording);
-    size_t count = (size_t)info->width_px * (size_t)info->height_px;
-    float *frame = ptie_scratch_alloc(count * sizeof *frame);
-    ptie_status status = frame ? ptie_recording_read(recording, 0, frame) : PTIE_ENOMEM;
-    if (status == PTIE_OK) {
-        double low = (double)frame[0], high = low, sum = 0;
-        for (size_t i = 0; i < count; i++) {
-            double value = (double)frame[i];
-            low = value < low ? value : low;
-            high = value > high ? value : high;
-            sum += value;
-        }
-        add_text(f, "first frame", "%.6g .. %.6g, mean %.6g", low, high, sum / (double)count);
-    }
-    ptie_scratch_free(frame);
-    return status;
-}
-
-static ptie_status describe_recording(facts *f, const char *path) {
-    ptie_recording *recording;
-    ptie_status status = ptie_recording_open(&recording, path);
-    if (status != PTIE_OK) return status;
-    const ptie_recording_info *info = ptie_recording_get_info(recording);
-    add_text(f, "kind", "recording");
-    add_text(f, "format", "%s", info->format);
-    if (info->dataset[0]) add_text(f, "data set", "%s", info->dataset);
-    add_number(f, "frames", (double)info->frames, "%lld", (long long)info->frames);
-    add_number(f, "width", info->width_px, "%d px", info->width_px);
-    add_number(f, "height", info->height_px, "%d px", info->height_px);
-    add_text(f, "sample", "%s", info->sample);
-    if (info->unit[0]) add_text(f, "unit", "%s", info->unit);
-    if (info->pixel_m > 0) add_quantity(f, "pixel", info->pixel_m, PTIE_LENGTH);
-    if (info->frame_rate_hz > 0) add_quantity(f, "frame rate", info->frame_rate_hz, PTIE_RATE);
-    status = info->frames > 0 ? describe_values(f, recording) : PTIE_OK;
-    ptie_recording_close(recording);
-    return status;
-}
-
 static void add_path(facts *f, const char *name, const char *path) {
     if (path[0]) add_text(f, name, "%s", path);
 }
@@ -223,7 +178,7 @@ static ptie_status describe_file(facts *f, const char *path, bool json) {
     if (ends_in(path, ".ini")) return describe_ini(f, path, json);
     if (ends_in(path, ".safetensors")) return describe_model(f, path);
     if (hdf5 && describe_dataset(f, path) == PTIE_OK) return PTIE_OK;
-    return describe_recording(f, path);
+    return add_recording(f, path);
 }
 
 int info_command(int argc, char **argv) {

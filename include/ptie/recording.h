@@ -51,6 +51,10 @@ PTIE_API PTIE_NODISCARD ptie_status ptie_recording_open(ptie_recording **out, co
 PTIE_API void ptie_recording_close(ptie_recording *recording); /* NULL is fine */
 PTIE_API const ptie_recording_info *ptie_recording_get_info(const ptie_recording *recording);
 
+/* info (out): what ptie_recording_open would say; and of a Photron header whose .mraw file is missing what it tells
+   all the same, with frames = 0 and a warning.  Errors as for ptie_recording_open. */
+PTIE_API PTIE_NODISCARD ptie_status ptie_recording_describe(ptie_recording_info *info, const char *path);
+
 /* frame (out): height x width values as stored, converted to float.  Not thread-safe per recording.
    Errors: PTIE_EINVAL (frame number), PTIE_ESIZE (a file of a sequence unlike the first), PTIE_EIO,
    PTIE_EFORMAT, PTIE_EUNSUPPORTED, PTIE_ENOMEM, PTIE_ENUMERIC (NaN or infinity: names the pixel). */

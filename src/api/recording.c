@@ -23,6 +23,13 @@ const ptie_recording_info *ptie_recording_get_info(const ptie_recording *recordi
     return recording ? ptie_io_info(recording) : NULL;
 }
 
+ptie_status ptie_recording_describe(ptie_recording_info *info, const char *path) {
+    static const char where[] = "ptie_recording_describe";
+    PTIE_TRY(ptie_check_pointer(info, where, "info"));
+    PTIE_TRY(ptie_check_pointer(path, where, "path"));
+    return ptie_io_describe(info, path);
+}
+
 ptie_status ptie_recording_read(ptie_recording *recording, int64_t frame, float *data) {
     static const char where[] = "ptie_recording_read";
     PTIE_TRY(ptie_check_pointer(recording, where, "recording"));

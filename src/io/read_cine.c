@@ -159,7 +159,8 @@ static void take_facts(const cine_recording *file, ptie_recording_info *info) {
     info->skip = 1;
     if (rate_hz > 0 && cine->nominal_rate_hz / rate_hz > 1.5 && cine->nominal_rate_hz / rate_hz < 1e9)
         info->skip = llround(cine->nominal_rate_hz / rate_hz);
-    if (cine->pixels_per_metre > 0) info->pixel_m = 1.0 / (double)cine->pixels_per_metre;
+    /* A whole number of pixels per metre: what it stands for is a whole number of 10 nm. */
+    if (cine->pixels_per_metre > 0) info->pixel_m = round(1e8 / (double)cine->pixels_per_metre) / 1e8;
 }
 
 /* inside: "", or "/codes" for 10-bit codes as stored. */

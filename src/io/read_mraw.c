@@ -144,17 +144,35 @@ static void take_facts(ptie_recording_info *info, const ptie_cih *cih) {
     info->roi_y_px = cih->y > 0 && cih->y < PTIE_LONGEST_SIDE ? (int32_t)cih->y : 0;
 }
 
+static ptie_status load_header(mraw *file, ptie_recording_info *info, ptie_cih *cih) {
+    PTIE_TRY(ptie_cih_read(cih, file->header));
+    PTIE_TRY(take_packing(file, info, cih));
+    PTIE_TRY(ptie_info_set_size(info, file->header, (uint64_t)cih->width, (uint64_t)cih->height));
+    file->raster.width = info->width_px;
+    file->raster.height = info->height_px;
+    take_facts(info, cih);
+    return PTIE_OK;
+}
+
 static ptie_status mraw_load(mraw *file, ptie_recording_info *info, const char *path) {
     ptie_cih cih;
     PTIE_TRY(find_files(file, path));
-    PTIE_TRY(ptie_cih_read(&cih, file->header));
-    PTIE_TRY(take_packing(file, info, &cih));
-    PTIE_TRY(ptie_info_set_size(info, file->header, (uint64_t)cih.width, (uint64_t)cih.height));
-    file->raster.width = info->width_px;
-    file->raster.height = info->height_px;
+    PTIE_TRY(load_header(file, info, &cih));
     PTIE_TRY(ptie_input_open(&file->stream, file->path, &file->file_bytes));
-    PTIE_TRY(count_frames(file, info, &cih));
-    take_facts(info, &cih);
+    return count_frames(file, info, &cih);
+}
+
+static ptie_status mraw_describe(ptie_recording_info *info, const char *path) {
+    ptie_cih cih;
+    mraw *file;
+    PTIE_TRY(ptie_alloc_status(&file, 1, sizeof *file, path));
+    snprintf(file->header, sizeof file->header, "%s", path);
+    const bool is_header = !has_ending(path, ".mraw");
+    const ptie_status status = is_header ? load_header(file, info, &cih) : find_files(file, path);
+    ptie_free(file);
+    PTIE_TRY(status);
+    info->recorded = cih.frames;
+    snprintf(info->warning, sizeof info->warning, "this is the header alone: the frames (.mraw) are not beside it");
     return PTIE_OK;
 }
 
@@ -183,4 +201,9 @@ static ptie_status mraw_read(void *state, int64_t frame, float *data) {
 }
 
 const ptie_reader ptie_read_mraw = {
-    .name = "MRAW", .claims = mraw_claims, .open = mraw_open, .read = mraw_read, .close = mraw_close};
+    .name = "MRAW",
+    .claims = mraw_claims,
+    .open = mraw_open,
+    .describe = mraw_describe,
+    .read = mraw_read,
+    .close = mraw_close};

@@ -22,6 +22,9 @@ typedef struct ptie_reader {
        set in the file, or is "".  On failure *state is NULL. */
     ptie_status (*open)(void **state, ptie_recording_info *info, const char *path,
                         const char *inside);
+    /* Describes a recording whose frames are missing, from the header they should lie beside; NULL where frames have
+       none of their own. */
+    ptie_status (*describe)(ptie_recording_info *info, const char *path);
     /* Frame 0 .. info->frames-1 as stored. */
     ptie_status (*read)(void *state, int64_t frame, float *data);
     void (*close)(void *state); /* NULL is fine */

@@ -122,6 +122,21 @@ ptie_status ptie_io_choose(int64_t *count, ptie_frame_range range, int64_t recor
     return PTIE_OK;
 }
 
+ptie_status ptie_io_describe(ptie_recording_info *info, const char *path) {
+    ptie_recording *recording;
+    *info = (ptie_recording_info){.frame_step = 1};
+    const ptie_status status = ptie_io_open(&recording, path);
+    if (status == PTIE_OK) {
+        *info = recording->info;
+        ptie_io_close(recording);
+        return PTIE_OK;
+    }
+    const ptie_reader *reader = choose(path, NULL);
+    if (status != PTIE_EIO || !reader || !reader->describe) return status;
+    snprintf(info->format, sizeof info->format, "%s", reader->name);
+    return reader->describe(info, path);
+}
+
 bool ptie_io_has_data_sets(const char *path) {
     const ptie_reader *reader;
     return find_reader(&reader, path, "") == PTIE_OK && reader->has_data_sets;

@@ -12,6 +12,8 @@ void ptie_io_close(ptie_recording *recording); /* NULL is fine */
 const ptie_recording_info *ptie_io_info(const ptie_recording *recording);
 ptie_status ptie_io_read(ptie_recording *recording, int64_t frame, float *data);
 
+ptie_status ptie_io_describe(ptie_recording_info *info, const char *path);
+
 /* How many frames of `recorded` a range takes.  PTIE_EINVAL, naming `path`, when it reaches behind them. */
 ptie_status ptie_io_choose(int64_t *count, ptie_frame_range range, int64_t recorded, const char *path);
 

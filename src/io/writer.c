@@ -40,10 +40,12 @@ static void writer_free(ptie_writer *writer) {
     ptie_free(writer);
 }
 
-/* Integers of up to 16 bits stay what they are; everything else is float32. */
+/* Integers of up to 16 bits ("u16", "u12 packed") stay what they are; everything else is float32. */
 static ptie_sample stored_sample(const char *sample) {
+    char digits[8];
     int64_t bits;
-    if (sample[0] != 'u' || !ptie_parse_integer(sample + 1, 1, 16, &bits))
+    snprintf(digits, sizeof digits, "%.*s", sample[0] ? (int)strcspn(sample + 1, " ") : 0, sample + 1);
+    if (sample[0] != 'u' || !ptie_parse_integer(digits, 1, 16, &bits))
         return (ptie_sample){'f', sizeof(float)};
     return (ptie_sample){'u', bits > 8 ? 2 : 1};
 }

@@ -482,6 +482,7 @@ info
     ptie info                            # this machine
     ptie info models/paper.safetensors   # a model
     ptie info jet.h5:/entry/data/plus    # a recording
+    ptie info shot.mraw --json           # one of a camera, for a program
     ptie info paper > mine.ini           # a preset, to edit
   
   Usage:

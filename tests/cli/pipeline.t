@@ -71,6 +71,7 @@ Simulate, train, evaluate, run, denoise, measure
   unit         rad
   pixel        20 um
   frame rate   25 kHz
+  duration     160 us
   first frame  * .. *, mean * (glob)
   $ wc -l < frames.csv
   5

@@ -182,6 +182,26 @@ static void the_other_file_is_missing(void **state) {
     assert_fails(ptie_recording_open(&recording, support_temporary("nothere.mraw")), PTIE_EIO, "No such file");
 }
 
+static void a_header_alone_is_described(void **state) {
+    (void)state;
+    size_t bytes;
+    ptie_recording_info info;
+    unsigned char *header = support_read(golden_camera("u12.cih"), &bytes);
+    const char *path = support_temporary("header.cih");
+    support_write(path, header, bytes);
+    free(header);
+    assert_ok(ptie_recording_describe(&info, path));
+    assert_string_equal(info.format, "MRAW");
+    assert_string_equal(info.camera, "FASTCAM Test");
+    assert_non_null(strstr(info.warning, "header alone"));
+    assert_true(info.frames == 0 && info.recorded == 3 && info.width_px == 7);
+    assert_ok(ptie_recording_describe(&info, golden_camera("u12.cih")));
+    assert_true(info.frames == 3 && !*info.warning);
+    support_write(support_temporary("frames.mraw"), "x", 1);
+    assert_fails(ptie_recording_describe(&info, support_temporary("frames.mraw")), PTIE_EIO, ".cihx or .cih beside it");
+    assert_fails(ptie_recording_describe(&info, support_temporary("nothere.cih")), PTIE_EIO, "No such file");
+}
+
 /* --- writing ---------------------------------------------------------------------------------- */
 
 static const ptie_recording_info camera = {.width_px = GOLDEN_WIDTH,
@@ -329,6 +349,7 @@ int main(void) {
         cmocka_unit_test(headers_that_lie),
         cmocka_unit_test(a_cut_header_is_refused),
         cmocka_unit_test(the_other_file_is_missing),
+        cmocka_unit_test(a_header_alone_is_described),
         cmocka_unit_test(what_is_written_is_read),
         cmocka_unit_test(counts_are_rounded_and_clipped),
         cmocka_unit_test(python_reads_it),
