@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Recordings: frames over time, in files of many kinds.  docs/formats.md.
  *
- * Reads   NPY, PNG (grey; colour is refused), TIFF (single, multi-page, integers and float), HDF5 (any
+ * Reads   Photron MRAW (with its CIH or CIHX), Phantom CINE, MATLAB v5 to v7.3, raw frames with a JSON file, NPY, PNG (grey; colour is refused), TIFF (single, multi-page, integers and float), HDF5 (any
  *         numeric 2-D or 3-D data set: "file.h5:/path/in/file"), a folder or a pattern with one %d or %0Nd
  *         ("flow_%02d.png") as numbered frames.
  * Writes  NPY, TIFF, HDF5 (NeXus), each of float32 or of 8- or 16-bit integers; PNG (8- or 16-bit integers, or
