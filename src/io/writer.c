@@ -2,6 +2,7 @@
 /* Finds the format of an output path and keeps count of its frames. */
 #include "io/writer.h"
 
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
