@@ -29,7 +29,8 @@ PTIE_API void ptie_convert_params_init(ptie_convert_params *params);
 
 /* Copies in constant memory.  Values do not change, and are stored as in the input: unsigned integers of up to 16
    bits as 8- or 16-bit integers, everything else as float32.  Unit, pixel size, frame rate and frame numbers are kept
-   where the output can hold them; a step divides the frame rate.  The output appears whole or not at all, and does not
+   where the output can hold them, and so are the metrics of a result of ptie_run in HDF5 and MAT; a step divides the
+   frame rate.  The output appears whole or not at all, and does not
    depend on the number of threads.  Without a range, video reads the recording twice.
    Errors: PTIE_EINVAL (frames, rectangle, output over input) and those of ptie_recording_open, ptie_recording_read,
    ptie_writer_create and ptie_writer_append; PTIE_ECANCELLED. */

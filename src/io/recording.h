@@ -24,6 +24,9 @@ bool ptie_io_has_data_sets(const char *path);
 bool ptie_io_needs_range(const char *path);
 /* ptie_writer_create with all a writer can be told.  path and name are copied, other strings are not. */
 ptie_status ptie_io_create(ptie_writer **out, const ptie_writer_job *job);
+/* Numbers that go with the frames, before the first of them: can it take any?  Then those of `path`. */
+bool ptie_io_has_columns(const ptie_writer *writer);
+ptie_status ptie_io_add_column(ptie_writer *writer, const char *path, const double *values, int64_t count);
 ptie_status ptie_io_append(ptie_writer *writer, const float *frame);
 ptie_status ptie_io_complete(ptie_writer *writer); /* ptie_writer_close */
 void ptie_io_discard(ptie_writer *writer);         /* NULL is fine */

@@ -116,6 +116,13 @@ static ptie_status write_packed(h5_map *map) {
     return PTIE_OK;
 }
 
+static ptie_status h5_add_column(void *state, const char *path, const double *values, int64_t count) {
+    h5_map *map = state;
+    const uint64_t length = (uint64_t)count;
+    PTIE_TRY(ptie_h5_dataset(map->h5, path, PTIE_H5_F64, 1, &length, 0));
+    return ptie_h5_write(map->h5, path, PTIE_H5_F64, 0, length, values);
+}
+
 static ptie_status h5_append(void *state, const float *frame) {
     h5_map *map = state;
     const size_t bytes = ptie_job_bytes(map->job);
@@ -147,5 +154,6 @@ static ptie_status h5_complete(void *state, int64_t frames) {
 const ptie_writer_format ptie_write_h5 = {.endings = {".h5", ".hdf5"},
                                           .create = h5_create,
                                           .append = h5_append,
+                                          .add_column = h5_add_column,
                                           .complete = h5_complete,
                                           .discard = h5_discard};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* MAT-file version 5, uncompressed, as MATLAB and Octave load it: the map [H, W, T], column-major as they are, and what
- * it is beside it.  Frames are turned and appended as they come; the sizes in front of them are filled in at the end.
+/* MAT-file version 5, uncompressed, as MATLAB and Octave load it: what goes with the map, then the map [H, W, T],
+ * column-major as they are.  Frames are turned and appended as they come; the sizes in front of them are filled in at the end.
  */
 #include <string.h>
 
@@ -135,7 +135,7 @@ static void name_variable(char name[NAME_BYTES], const char *from) {
     const bool is_letter = (from[0] >= 'a' && from[0] <= 'z') || (from[0] >= 'A' && from[0] <= 'Z');
     snprintf(name, NAME_BYTES, "%s%s", is_letter ? "" : "map_", from);
     for (char *c = name; *c; c++)
-        if (*c == '-') *c = '_';
+        if (*c == '-' || *c == '/') *c = '_';
 }
 
 static void mat_discard(void *state) {
@@ -166,9 +166,6 @@ static void describe(mat_output *mat) {
     write_numbers(out, "frame_step", &(double){(double)(job->info.frame_step ? job->info.frame_step : 1)}, 1);
     if (job->source) write_text(out, "recording", job->source);
     if (job->command) write_text(out, "command", job->command);
-    mat->map_at = ftell(out);
-    const variable map = map_of(mat, 0);
-    begin_variable(out, &map);
 }
 
 static ptie_status mat_create(void **state, const ptie_writer_job *job) {
@@ -196,11 +193,28 @@ static void turn(const mat_output *mat) {
             memcpy(mat->turned + (x * height + y) * bytes, mat->samples + (y * width + x) * bytes, bytes);
 }
 
+/* "/entry/metrics/phase/mgm" becomes metrics_phase_mgm. */
+static ptie_status mat_add_column(void *state, const char *path, const double *values, int64_t count) {
+    mat_output *mat = state;
+    char name[NAME_BYTES];
+    static const char entry[] = "/entry/";
+    name_variable(name, strncmp(path, entry, strlen(entry)) == 0 ? path + strlen(entry) : path);
+    write_numbers(mat->stream.out, name, values, (size_t)count);
+    return ptie_stream_check(&mat->stream);
+}
+
+static void begin_map(mat_output *mat) {
+    const variable map = map_of(mat, 0);
+    mat->map_at = ftell(mat->stream.out);
+    begin_variable(mat->stream.out, &map);
+}
+
 static ptie_status mat_append(void *state, const float *frame) {
     mat_output *mat = state;
     PTIE_TRY(ptie_job_encode(mat->job, mat->samples, frame));
     turn(mat);
     PTIE_TRY(check_size(mat, ++mat->frames));
+    if (mat->frames == 1) begin_map(mat);
     fwrite(mat->turned, 1, ptie_job_bytes(mat->job), mat->stream.out);
     return ptie_stream_check(&mat->stream);
 }
@@ -219,5 +233,6 @@ static ptie_status mat_complete(void *state, int64_t frames) {
 const ptie_writer_format ptie_write_mat = {.endings = {".mat"},
                                            .create = mat_create,
                                            .append = mat_append,
+                                           .add_column = mat_add_column,
                                            .complete = mat_complete,
                                            .discard = mat_discard};

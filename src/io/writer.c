@@ -93,6 +93,14 @@ ptie_status ptie_io_create(ptie_writer **out, const ptie_writer_job *job) {
     return PTIE_OK;
 }
 
+bool ptie_io_has_columns(const ptie_writer *writer) {
+    return writer->format->add_column != NULL;
+}
+
+ptie_status ptie_io_add_column(ptie_writer *writer, const char *path, const double *values, int64_t count) {
+    return writer->format->add_column(writer->state, path, values, count);
+}
+
 ptie_status ptie_io_append(ptie_writer *writer, const float *frame) {
     const int64_t planned = writer->job.info.frames;
     if (planned > 0 && writer->written == planned)

@@ -32,6 +32,8 @@ typedef struct ptie_writer_format {
     const char *endings[3];                                          /* NULL after the last */
     ptie_status (*create)(void **state, const ptie_writer_job *job); /* on failure *state is NULL */
     ptie_status (*append)(void *state, const float *frame);
+    /* Before the first frame: one value per frame, named as in HDF5 ("/entry/metrics/phase/mgm").  NULL: no place. */
+    ptie_status (*add_column)(void *state, const char *path, const double *values, int64_t count);
     /* After `frames` successful appends: completes the file or leaves none; frees in any case. */
     ptie_status (*complete)(void *state, int64_t frames);
     void (*discard)(void *state); /* leaves no file; frees */

@@ -8,6 +8,7 @@
 #include "base/image.h"
 #include "base/memory.h"
 #include "io/recording.h"
+#include "run/columns.h"
 
 #define NAME_BYTES 64
 
@@ -152,6 +153,8 @@ ptie_status ptie_convert_recording(ptie_pool *pool, const ptie_convert_params *p
     ptie_status status = open_input(&c);
     if (status == PTIE_OK && c.passes > 1) status = find_range(&c, progress);
     if (status == PTIE_OK) status = create_output(&c, pool);
+    if (status == PTIE_OK)
+        status = ptie_copy_columns(c.output, params->input, ptie_io_info(c.input), params->frames, c.frames);
     if (status == PTIE_OK) status = copy_frames(&c, progress);
     ptie_io_discard(c.output);
     ptie_io_close(c.input);

@@ -91,6 +91,23 @@ A film of all frames has one range; for MATLAB, frames are the third dimension
   ! ptie: old.y4m: exists already (use -f to overwrite)
   [1]
 
+The metrics of a result go with it
+  $ ptie simulate jet -o jet.h5 --size 32 --frames 4 && ptie reconstruct --rig jet.ini jet.h5 -o phase.h5 | head -1
+  4 frames of 32 x 32 px, 20 um each, in * s (* frames/s) (glob)
+  ! jet.h5: 4 frames of 32 x 32 px with the truth; rig in jet.ini
+  $ ptie convert phase.h5:/entry/data/phase p.mat --frames 1::2 && ptie convert phase.h5 p.h5 --frames 1::2
+  ! p.mat: from phase.h5:/entry/data/phase
+  ! p.h5: from phase.h5
+  $ /usr/bin/python3 - <<'END'
+  > import h5py, numpy as np, scipy.io
+  > want = h5py.File("phase.h5")["entry/metrics/phase/residual"][1::2]
+  > m, f = scipy.io.loadmat("p.mat"), h5py.File("p.h5")
+  > print((m["metrics_phase_residual"][:, 0] == want).all(), (f["entry/metrics/phase/residual"][()] == want).all())
+  > print(m["phase"].shape)
+  > END
+  True True
+  (32, 32, 2)
+
 What cannot be taken is told
   $ /usr/bin/python3 -c "import numpy as np; np.save('r.npy', np.zeros((5, 4, 6), 'f4'))"
   $ ptie convert r.npy a.tif --frames 5:
