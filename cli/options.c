@@ -123,10 +123,6 @@ static int set_frames(const command_usage *u, const option *o, const char *text)
     return GO_ON;
 }
 
-int64_t frames_in(ptie_frame_range range) {
-    return range.end ? (range.end - range.first - 1) / range.step + 1 : 0;
-}
-
 static int set_range(const command_usage *u, const option *o, const char *text) {
     char *middle, *end;
     value_range range = {.low = strtod(text, &middle)};

@@ -73,9 +73,6 @@ int parse_options(const command_usage *usage, int argc, char **argv, operand_lis
 /* Did the command line have the option of this name? */
 bool was_given(const command_usage *usage, const operand_list *operands, const char *name);
 
-/* How many frames a range takes; 0 = to the end. */
-int64_t frames_in(ptie_frame_range range);
-
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
 #endif

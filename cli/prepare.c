@@ -71,9 +71,7 @@ static int parse(settings *s, int argc, char **argv) {
     if (!ends_in(p->output, ".h5") && !ends_in(p->output, ".hdf5"))
         return misused("prepare: --output: expected a name ending in .h5 or .hdf5, found '%s'", p->output);
     p->until = (ptie_step)s->until;
-    p->first = s->frames.first;
-    p->step = s->frames.step;
-    p->count = frames_in(s->frames);
+    p->frames = s->frames;
     p->overwrite = s->compute.force;
     return GO_ON;
 }

@@ -6,6 +6,7 @@
 #define PTIE_PREPARE_H
 
 #include <ptie/context.h>
+#include <ptie/recording.h>
 #include <ptie/rig.h>
 
 /* The steps from sensor image to planes, in their order. */
@@ -28,7 +29,7 @@ typedef struct ptie_prepare_params {
     ptie_step until;               /* last step, default PTIE_STEP_MASK */
     const char *output;            /* .h5; required */
     const char *provenance;        /* command line to keep in the file, or NULL */
-    int64_t first, count, step;    /* frames to take; count 0 = to the end; default 0, 0, 1 */
+    ptie_frame_range frames;       /* frames to take; default 0, 0, 1 */
     bool overwrite;
 } ptie_prepare_params;
 

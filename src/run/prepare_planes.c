@@ -3,16 +3,15 @@
 
 #include <stdio.h>
 
-#include <ptie/version.h>
-
 #include "base/file.h"
 #include "base/memory.h"
 #include "io/nexus.h"
+#include "io/recording.h"
 #include "run/prepare.h"
 #include "run/rig.h"
+#include "run/run.h"
 #include "run/stages.h"
 
-#define PROCESS "/entry/process_1"
 
 typedef struct preparing {
     const ptie_prepare_params *params;
@@ -41,7 +40,7 @@ static ptie_status read_frame(void *context, int64_t frame, size_t slot) {
     preparing *p = context;
     float *images[PTIE_ROLES];
     for (int32_t i = 0; i < p->recorded.images; i++) images[i] = image_of(p, slot, i);
-    return ptie_source_read(p->source, p->params->first + frame * p->params->step, images);
+    return ptie_source_read(p->source, p->params->frames.first + frame * p->params->frames.step, images);
 }
 
 static ptie_status prepare_frame(void *context, int64_t frame, size_t slot, int32_t worker) {
@@ -64,18 +63,6 @@ static ptie_status write_frame(void *context, int64_t frame, size_t slot) {
     return PTIE_OK;
 }
 
-static ptie_status choose_frames(preparing *p) {
-    const ptie_prepare_params *params = p->params;
-    const int64_t all = p->recorded.frames, available = (all - params->first + params->step - 1) / params->step;
-    if (params->first >= all || params->count > available)
-        return PTIE_FAIL(PTIE_EINVAL, "prepare: frames out of range (expected some of 0..%lld, found %lld from %lld in "
-                                      "steps of %lld)",
-                         (long long)all - 1, (long long)params->count, (long long)params->first,
-                         (long long)params->step);
-    p->frames = params->count ? params->count : available;
-    return PTIE_OK;
-}
-
 static ptie_status open_inputs(preparing *p) {
     const ptie_prepare_params *params = p->params;
     const ptie_run_params inputs = {.rig = params->rig,
@@ -89,7 +76,7 @@ static ptie_status open_inputs(preparing *p) {
         PTIE_TRY(ptie_output_differs(params->output, paths[i]));
     PTIE_TRY(ptie_source_open(&p->source, &inputs));
     p->recorded = ptie_source_get_shape(p->source);
-    PTIE_TRY(choose_frames(p));
+    PTIE_TRY(ptie_io_choose(&p->frames, params->frames, p->recorded.frames, ptie_run_name(&inputs)));
     PTIE_TRY(ptie_prepare_until(&p->plan, p->source, params->rig, params->until));
     p->shape = ptie_prepare_get_shape(p->plan);
     return PTIE_OK;
@@ -108,13 +95,10 @@ static ptie_status allocate(preparing *p, const ptie_pool *pool) {
 }
 
 static ptie_status describe(ptie_h5 *h5, const ptie_prepare_params *params) {
-    PTIE_TRY(ptie_h5_set_text(h5, PROCESS, "NX_class", "NXprocess"));
-    PTIE_TRY(ptie_h5_set_text(h5, PROCESS, "program", "ptie"));
-    PTIE_TRY(ptie_h5_set_text(h5, PROCESS, "version", PTIE_VERSION_STRING));
-    if (params->provenance) PTIE_TRY(ptie_h5_set_text(h5, PROCESS, "command", params->provenance));
+    PTIE_TRY(ptie_nexus_process(h5, params->recording, params->provenance));
     char *rig = ptie_rig_print(params->rig);
     if (!rig) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", params->output);
-    ptie_status status = ptie_h5_set_text(h5, PROCESS, "rig", rig);
+    ptie_status status = ptie_h5_set_text(h5, PTIE_NEXUS_PROCESS, "rig", rig);
     ptie_free(rig);
     return status;
 }
@@ -129,8 +113,8 @@ static ptie_status create_output(preparing *p) {
                               &(ptie_nexus_axes){.frames = (uint64_t)p->frames,
                                                  .width_px = p->shape.width_px,
                                                  .height_px = p->shape.height_px,
-                                                 .first_frame = params->first,
-                                                 .frame_step = params->step,
+                                                 .first_frame = params->frames.first,
+                                                 .frame_step = params->frames.step,
                                                  .frame_rate_hz = rig_hz > 0 ? rig_hz : recorded_hz,
                                                  .pixel_m = p->shape.pixel_m},
                               signals, (size_t)p->shape.planes));
