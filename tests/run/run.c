@@ -443,6 +443,125 @@ static void cancelling_leaves_nothing(void **state) {
     assert_true(nothing_left(&s));
 }
 
+/* Stops a run when `at` frames are written. */
+static int stop_later(void *user, uint64_t done, uint64_t total, const char *note) {
+    (void)total, (void)note;
+    return done >= *(const uint64_t *)user;
+}
+
+/* Enough frames that a stop lands behind those that regions are proposed from; the flow repeats. */
+enum { LONG = 120 };
+
+static void write_long_pair(setting *s, char paths[3][256]) {
+    static float frames[LONG][PIXELS];
+    static const char *const names[3] = {"plus.npy", "minus.npy", "truth.npy"};
+    static const char *const long_names[3] = {"long+.npy", "long-.npy", "longt.npy"};
+    for (int k = 0; k < 3; k++) {
+        ptie_recording *recording;
+        assert_ok(ptie_recording_open(&recording, support_temporary(names[k])));
+        for (int t = 0; t < LONG; t++) assert_ok(ptie_recording_read(recording, t % FRAMES, frames[t]));
+        ptie_recording_close(recording);
+        snprintf(paths[k], sizeof paths[k], "%s", support_temporary(long_names[k]));
+        write_recording(paths[k], frames, LONG);
+    }
+    s->params.plane[PTIE_PLUS] = paths[0];
+    s->params.plane[PTIE_MINUS] = paths[1];
+    s->params.truth = paths[2];
+    s->params.overwrite = false;
+    s->params.resume = true;
+}
+
+static ptie_status run_until(const setting *s, uint64_t stop, int32_t threads, ptie_run_summary *summary) {
+    ptie_ctx *ctx;
+    ptie_ctx_params p;
+    ptie_ctx_params_init(&p);
+    p.threads = threads;
+    assert_ok(ptie_ctx_create(&ctx, &p));
+    ptie_status status = ptie_run(ctx, &s->params, summary, (ptie_progress){stop_later, &stop});
+    ptie_ctx_free(ctx);
+    return status;
+}
+
+/* Stopped twice and resumed on other numbers of threads: file and table are those of a run left alone. */
+static void a_resumed_run_is_the_run_left_alone(void **state) {
+    (void)state;
+    setting s;
+    ptie_run_summary alone, resumed;
+    char paths[3][256], alone_h5[256], parts_h5[256], alone_csv[256], parts_csv[256];
+    size_t bytes[2];
+    init(&s);
+    write_long_pair(&s, paths);
+    snprintf(alone_h5, sizeof alone_h5, "%s", support_temporary("alone.h5"));
+    snprintf(alone_csv, sizeof alone_csv, "%s", support_temporary("alone.csv"));
+    snprintf(parts_h5, sizeof parts_h5, "%s", support_temporary("parts.h5"));
+    snprintf(parts_csv, sizeof parts_csv, "%s", support_temporary("parts.csv"));
+    s.params.output = alone_h5, s.params.metrics_csv = alone_csv;
+    assert_ok(run_until(&s, LONG + 1, 3, &alone));
+    assert_int_equal(alone.resumed, 0);
+    s.params.output = parts_h5, s.params.metrics_csv = parts_csv;
+    assert_fails(run_until(&s, 40, 1, &resumed), PTIE_ECANCELLED, "cancelled after");
+    const int64_t kept = resumed.frames;
+    assert_true(kept >= 40 && kept < LONG);
+    assert_fails(run_until(&s, (uint64_t)kept + 10, 3, &resumed), PTIE_ECANCELLED, "cancelled after");
+    assert_true(resumed.frames >= kept + 10);
+    assert_ok(run_until(&s, LONG + 1, 2, &resumed));
+    assert_true(resumed.resumed >= kept + 10);
+    resumed.resumed = 0;
+    resumed.seconds = alone.seconds;
+    assert_memory_equal(&resumed, &alone, sizeof alone);
+    for (int csv = 0; csv < 2; csv++) {
+        unsigned char *a = support_read(csv ? alone_csv : alone_h5, &bytes[0]);
+        unsigned char *b = support_read(csv ? parts_csv : parts_h5, &bytes[1]);
+        assert_int_equal(bytes[0], bytes[1]);
+        assert_memory_equal(a, b, bytes[0]);
+        free(a), free(b);
+    }
+}
+
+static void only_the_same_run_goes_on(void **state) {
+    (void)state;
+    setting s;
+    ptie_run_summary summary;
+    char paths[3][256];
+    init(&s);
+    write_long_pair(&s, paths);
+    s.params.output = support_temporary("begun.h5");
+    assert_fails(run_until(&s, 40, 2, &summary), PTIE_ECANCELLED, "cancelled");
+    s.params.frames.end = LONG - 1;
+    assert_fails(run_until(&s, LONG, 2, &summary), PTIE_EINVAL, "was begun with other settings (expected 'planes = ");
+    s.params.frames.end = 0;
+    s.rig.zero_border = false;
+    assert_fails(run_until(&s, LONG, 2, &summary), PTIE_EINVAL, "(expected 'zero_border = no', found 'zero_border = yes')");
+    s.rig.zero_border = true;
+    s.params.resume = false;
+    assert_fails(run_until(&s, LONG, 2, &summary), PTIE_EEXIST, "frames of an interrupted run (use --resume");
+    s.params.overwrite = true;
+    assert_ok(run_until(&s, LONG + 1, 2, &summary));
+    assert_int_equal(summary.frames, LONG);
+    assert_int_equal(summary.resumed, 0);
+}
+
+/* The page has every section, stands alone, and tells a file that is no result. */
+static void a_result_becomes_a_page(void **state) {
+    (void)state;
+    setting s;
+    ptie_run_summary summary;
+    size_t bytes;
+    init(&s);
+    assert_ok(run_with(&s, 2, &summary));
+    const char *page = support_temporary("page.html");
+    assert_ok(ptie_report_write(page, s.output, false));
+    assert_fails(ptie_report_write(page, s.output, false), PTIE_EEXIST, "page.html");
+    assert_fails(ptie_report_write(support_temporary("no.html"), s.plus, false), PTIE_EFORMAT, "plus.npy");
+    assert_false(support_exists(support_temporary("no.html")));
+    assert_false(support_exists(support_temporary("page.html.part.png")));
+    char *text = (char *)support_read(page, &bytes);
+    static const char *const sections[] = {"<h2>Phase</h2>", "<h2>Metrics</h2>", "<h2>Noise</h2>", "<h2>Rig</h2>", "data:image/png;base64,iVBORw0KGgo"};
+    for (size_t i = 0; i < sizeof sections / sizeof *sections; i++) assert_non_null(strstr(text, sections[i]));
+    assert_null(strstr(text, "src=\"http"));
+    free(text);
+}
+
 static void metrics_go_to_csv(void **state) {
     (void)state;
     setting s;
@@ -487,6 +606,9 @@ int main(void) {
         cmocka_unit_test(maps_without_flow_are_kept_without_regions),
         cmocka_unit_test(what_does_not_fit_is_refused_and_leaves_nothing),
         cmocka_unit_test(cancelling_leaves_nothing),
+        cmocka_unit_test(a_resumed_run_is_the_run_left_alone),
+        cmocka_unit_test(only_the_same_run_goes_on),
+        cmocka_unit_test(a_result_becomes_a_page),
         cmocka_unit_test(metrics_go_to_csv),
     };
     return cmocka_run_group_tests_name("run", tests, setup, NULL);
