@@ -26,7 +26,7 @@ double ptie_mosaic_imbalance(const float *image, int32_t width_px, int32_t heigh
 
 double ptie_plane_spread(const float *const *plane, int32_t count, const uint8_t *mask,
                          size_t pixels) {
-    double low = INFINITY, high = -INFINITY, sum = 0;
+    double low = (double)INFINITY, high = -low, sum = 0;
     for (int32_t i = 0; i < count; i++) {
         const double mean = ptie_masked_mean(plane[i], mask, pixels);
         low = fmin(low, mean), high = fmax(high, mean), sum += mean;

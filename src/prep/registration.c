@@ -112,7 +112,7 @@ static ptie_motion compose(ptie_motion m, double dx, double dy, double stretch, 
    below a pixel, the pixels compared stay the same: a row that comes and goes would keep the motion
    from settling. */
 static ptie_status refine(problem *p, ptie_texture *t, ptie_motion *motion) {
-    double size = INFINITY;
+    double size = (double)INFINITY;
     for (int i = 0; i < STEPS; i++) {
         PTIE_TRY(pose(p, t, *motion, size > 1));
         double step[N];
