@@ -18,11 +18,11 @@ static const char examples[] =
     "  # a shock front in real units, seen by diffraction\n"
     "  ptie simulate shock -o shock.h5 --family physical \\\n"
     "      --propagation angular-spectrum --boundary mirror\n\n"
-    "  # what a polarisation camera would have written: MRAW, with a no-flow and a\n"
-    "  # dark recording, the truth and the rig beside it\n"
-    "  ptie simulate jet -o lab.mraw --family physical --size 512 \\\n"
-    "      --propagation angular-spectrum --boundary mirror \\\n"
-    "      --camera examples/camera.ini\n\n"
+    "  # what a polarisation camera would have written: MRAW, with recordings of\n"
+    "  # no flow, of the dark and of a target, the truth and the rig beside it\n"
+    "  ptie simulate jet -o lab.mraw --camera examples/camera.ini --seed 2 \\\n"
+    "      --size 512 --pixel \"10 um\" --defocus \"20 mm\" --family physical \\\n"
+    "      --propagation angular-spectrum --boundary mirror\n\n"
     "  # every flow there is, as one figure\n"
     "  ptie simulate --gallery gallery.png\n";
 
@@ -32,8 +32,9 @@ static const char notes[] =
     "The recording holds /entry/data/plus and /entry/data/minus (intensity relative\n"
     "to its mean) and /entry/truth/phase (rad).\n\n"
     "With --camera it holds counts, in the format of FILE's ending if the camera has\n"
-    "a mosaic. Beside it: FILE_reference and FILE_dark, FILE_truth.h5, the rig as a\n"
-    "lab knows it and, as FILE_true.ini, as a perfect calibration would find it.\n";
+    "a mosaic. Beside it: FILE_reference (no flow), FILE_dark, FILE_target (dots for\n"
+    "'ptie rig calibrate'), FILE_truth.h5, the rig as a lab knows it and, as\n"
+    "FILE_true.ini, as a perfect calibration would find it.\n";
 
 typedef struct settings {
     compute_options compute;
@@ -68,6 +69,8 @@ static int parse(settings *s, int argc, char **argv) {
          .help = "with --camera: frames of the no-flow recording"},
         {0, "dark-frames", OPTION_INT32, &p->dark_frames, "N", .low = 0, .high = 1000000,
          .help = "with --camera: frames of the dark recording"},
+        {0, "target-frames", OPTION_INT32, &p->target_frames, "N", .low = 0, .high = 1000000,
+         .help = "with --camera: frames of the calibration target"},
         {0, "family", OPTION_CHOICE, &family, "NAME", .choices = families,
          .help = "kind of flow model"},
         {0, "amplitude", OPTION_QUANTITY, &p->amplitude_rad, "ANGLE", .quantity = PTIE_ANGLE,

@@ -19,7 +19,8 @@ typedef enum ptie_camera_layout {
 typedef enum ptie_exposure {
     PTIE_EXPOSE_FLOW = 0,
     PTIE_EXPOSE_REFERENCE = 1, /* the planes without flow */
-    PTIE_EXPOSE_DARK = 2       /* no light */
+    PTIE_EXPOSE_DARK = 2,      /* no light */
+    PTIE_EXPOSE_TARGET = 3     /* the planes of a calibration target at the object */
 } ptie_exposure;
 
 typedef struct ptie_camera_params {

@@ -24,7 +24,7 @@ typedef struct ptie_simulate_params {
     const char *provenance; /* command line to keep in the file, or NULL */
     bool overwrite;
     const ptie_camera_params *camera;      /* NULL: none */
-    int32_t reference_frames, dark_frames; /* with a camera; 0: no such recording; default 32 */
+    int32_t reference_frames, dark_frames, target_frames; /* with a camera; 0: no such recording; default 32 */
 } ptie_simulate_params;
 
 PTIE_API void ptie_simulate_params_init(ptie_simulate_params *params);
@@ -35,7 +35,8 @@ PTIE_API void ptie_simulate_params_init(ptie_simulate_params *params);
    and the rig, each whole or not at all.
 
    With a camera the output holds its counts: one image per frame from a mosaic, else the data sets plus and minus.
-   Beside NAME.xyz, in the same format, NAME_reference.xyz (no flow) and NAME_dark.xyz (no light); NAME_truth.h5
+   Beside NAME.xyz, in the same format, NAME_reference.xyz (no flow), NAME_dark.xyz (no light) and
+   NAME_target.xyz (dots at the object, for `ptie rig calibrate`); NAME_truth.h5
    with the phase, averaged over the mosaic's cells; and beside the rig, which says what a lab knows, RIG_true.ini with
    what a perfect calibration would find.  The frame size is that of the sensor.
 

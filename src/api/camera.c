@@ -42,7 +42,7 @@ ptie_status ptie_camera_expose(const ptie_camera *camera, float *const *counts, 
     PTIE_TRY(ptie_check_pointer(camera, where, "camera"));
     PTIE_TRY(ptie_check_pointer(counts, where, "counts"));
     PTIE_TRY(ptie_check_scratch(scratch, where));
-    PTIE_TRY(ptie_check_integer(exposure, PTIE_EXPOSE_FLOW, PTIE_EXPOSE_DARK, where, "exposure"));
+    PTIE_TRY(ptie_check_integer(exposure, PTIE_EXPOSE_FLOW, PTIE_EXPOSE_TARGET, where, "exposure"));
     PTIE_TRY(ptie_check_integer(frame, 0, INT64_C(1000000000000), where, "frame"));
     for (int32_t s = 0; s < camera->sensors; s++) PTIE_TRY(ptie_check_pointer(counts[s], where, "counts"));
     if (exposure != PTIE_EXPOSE_DARK) {

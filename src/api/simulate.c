@@ -25,6 +25,7 @@ void ptie_simulate_params_init(ptie_simulate_params *params) {
         .noise = 0.05,
         .reference_frames = 32,
         .dark_frames = 32,
+        .target_frames = 32,
     };
     ptie_flow_params_init(&params->flow);
 }
@@ -45,6 +46,7 @@ static ptie_status check(const ptie_simulate_params *p, const char *where) {
     PTIE_TRY(check_outputs(p, where));
     PTIE_TRY(ptie_check_integer(p->reference_frames, 0, MOST_FRAMES, where, "reference_frames"));
     PTIE_TRY(ptie_check_integer(p->dark_frames, 0, MOST_FRAMES, where, "dark_frames"));
+    PTIE_TRY(ptie_check_integer(p->target_frames, 0, MOST_FRAMES, where, "target_frames"));
     PTIE_TRY(ptie_check_integer(p->frames, 1, MOST_FRAMES, where, "frames"));
     PTIE_TRY(ptie_check_positive(p->frame_rate_hz, where, "frame_rate_hz"));
     PTIE_TRY(ptie_check_number(p->amplitude_rad, 0, 1e6, where, "amplitude_rad"));

@@ -13,8 +13,10 @@
 
 #define PI 3.14159265358979323846
 
+#define TARGET_DOTS 80
+
 /* Draws of the fixed patterns, one per purpose. */
-enum { DRAW_FRINGES = 0, DRAW_DUST = 2, DRAW_GAIN = 4, DRAW_OFFSET = 6 }; /* + plane or sensor */
+enum { DRAW_FRINGES = 0, DRAW_DUST = 2, DRAW_GAIN = 4, DRAW_OFFSET = 6, DRAW_TARGET = 8 }; /* + plane or sensor */
 
 void ptie_camera_params_init(ptie_camera_params *params) {
     *params = (ptie_camera_params){
@@ -73,20 +75,29 @@ static void add_fringes(const ptie_camera *camera, float *map, uint64_t plane) {
     }
 }
 
-/* Gaussian specks of 1.5 to 6 pixels (C5). */
-static void add_dust(const ptie_camera *camera, float *map, uint64_t sensor) {
+typedef struct speckle {
+    int32_t count;
+    double low, high, depth; /* range of the radii, px; light taken away in the middle */
+} speckle;
+
+static void add_specks(const ptie_camera *camera, float *map, const speckle *specks, uint64_t draw) {
     const int32_t w = camera->width_px, h = camera->height_px;
     ptie_random random;
-    ptie_random_init(&random, camera->seed, PTIE_STREAM_PATTERN, DRAW_DUST + sensor);
-    for (int32_t speck = 0; speck < camera->params.dust; speck++) {
+    ptie_random_init(&random, camera->seed, PTIE_STREAM_PATTERN, draw);
+    for (int32_t speck = 0; speck < specks->count; speck++) {
         const double x0 = ptie_random_uniform(&random, 0, w), y0 = ptie_random_uniform(&random, 0, h),
-                     radius = ptie_random_uniform(&random, 1.5, 6), reach = 4 * radius;
+                     radius = ptie_random_uniform(&random, specks->low, specks->high), reach = 4 * radius;
         for (int32_t y = (int32_t)fmax(0, y0 - reach); y < fmin(h, y0 + reach); y++)
             for (int32_t x = (int32_t)fmax(0, x0 - reach); x < fmin(w, x0 + reach); x++) {
                 const double r2 = ((x - x0) * (x - x0) + (y - y0) * (y - y0)) / (radius * radius);
-                map[(size_t)y * (size_t)w + (size_t)x] *= (float)(1 - camera->params.dust_depth * exp(-r2));
+                map[(size_t)y * (size_t)w + (size_t)x] *= (float)(1 - specks->depth * exp(-r2));
             }
     }
+}
+
+/* Gaussian specks of 1.5 to 6 pixels (C5). */
+static void add_dust(const ptie_camera *camera, float *map, uint64_t sensor) {
+    add_specks(camera, map, &(speckle){camera->params.dust, 1.5, 6, camera->params.dust_depth}, DRAW_DUST + sensor);
 }
 
 /* map = map * (1 + rms z) or map + rms z, z normal by pixel. */
@@ -185,6 +196,11 @@ void ptie_camera_illuminate(const ptie_camera *camera, float *i_zero) {
             const bool nozzle = (x + 0.5) * camera->pixel_m < p->nozzle_length_m && 2 * fabs(dy) < p->nozzle_width_m;
             *i_zero++ = nozzle ? 0 : (float)beam;
         }
+}
+
+void ptie_camera_target(const ptie_camera *camera, float *i_zero) {
+    const speckle dots = {TARGET_DOTS, 6, 14, 0.7};
+    add_specks(camera, i_zero, &dots, DRAW_TARGET);
 }
 
 size_t ptie_camera_scratch(const ptie_camera *camera) {

@@ -30,6 +30,8 @@ ptie_status ptie_camera_plan(ptie_camera **out, const ptie_camera_params *params
                              int32_t height_px, double pixel_m, uint64_t seed);
 size_t ptie_camera_scratch(const ptie_camera *camera);
 void ptie_camera_illuminate(const ptie_camera *camera, float *i_zero);
+/* Puts a calibration target into the light at the object: dots in random places, without phase (C1). */
+void ptie_camera_target(const ptie_camera *camera, float *i_zero);
 void ptie_camera_capture(const ptie_camera *camera, float *const *counts, const float *plus,
                          const float *minus, ptie_exposure exposure, int64_t frame, void *scratch);
 

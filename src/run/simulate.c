@@ -73,7 +73,7 @@ static ptie_status open_film(const simulation *s, ptie_film *film, const char *p
                                 .roi_x_px = p->camera->roi_x_px,
                                 .roi_y_px = p->camera->roi_y_px};
     snprintf(info.sample, sizeof info.sample, "u%d", p->camera->bits);
-    const char *const title[] = {p->flow.morphology, "no flow", "dark"}; /* by exposure */
+    const char *const title[] = {p->flow.morphology, "no flow", "dark", "target"}; /* by exposure */
     snprintf(info.comment, sizeof info.comment, "%s, seed %llu", title[s->exposure], (unsigned long long)p->flow.seed);
     return ptie_film_open_image(film, path, "counts", &info, p);
 }
@@ -138,17 +138,20 @@ static ptie_status record(simulation *s, const char *path, ptie_exposure exposur
 
 static ptie_status record_all(simulation *s) {
     const ptie_simulate_params *p = s->params;
-    const int64_t still = p->camera ? p->reference_frames : 0, dark = p->camera ? p->dark_frames : 0;
-    s->total = (uint64_t)(p->frames + still + dark);
+    const int64_t still = p->camera ? p->reference_frames : 0, dark = p->camera ? p->dark_frames : 0,
+                  target = p->camera ? p->target_frames : 0;
+    s->total = (uint64_t)(p->frames + still + dark + target);
     PTIE_TRY(record(s, p->output, PTIE_EXPOSE_FLOW, p->frames));
     PTIE_TRY(record(s, s->files.reference, PTIE_EXPOSE_REFERENCE, still));
     PTIE_TRY(record(s, s->files.dark, PTIE_EXPOSE_DARK, dark));
+    PTIE_TRY(record(s, s->files.target, PTIE_EXPOSE_TARGET, target));
     return p->rig ? ptie_simulate_write_rigs(p, &s->files) : PTIE_OK;
 }
 
 /* Finds out before the work whether the files can be written after it. */
 static ptie_status check_outputs(const ptie_simulate_params *p, const ptie_simulated_files *files) {
-    const char *const paths[] = {p->output, p->rig, files->truth, files->reference, files->dark, files->true_rig};
+    const char *const paths[] = {p->output, p->rig, files->truth, files->reference, files->dark,
+                                 files->target, files->true_rig};
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
         ptie_output_file file;
         if (!paths[i] || !paths[i][0]) continue;

@@ -29,6 +29,7 @@ ptie_status ptie_simulate_name_files(ptie_simulated_files *files, const ptie_sim
     PTIE_TRY(name_beside(files->truth, params->output, "_truth", ".h5"));
     if (params->reference_frames) PTIE_TRY(name_beside(files->reference, params->output, "_reference", NULL));
     if (params->dark_frames) PTIE_TRY(name_beside(files->dark, params->output, "_dark", NULL));
+    if (params->target_frames) PTIE_TRY(name_beside(files->target, params->output, "_target", NULL));
     return params->rig ? name_beside(files->true_rig, params->rig, "_true", NULL) : PTIE_OK;
 }
 

@@ -11,7 +11,7 @@ enum { PTIE_SIMULATED_PATH = 4096 };
 
 /* "" for a file that is not written. */
 typedef struct ptie_simulated_files {
-    char reference[PTIE_SIMULATED_PATH], dark[PTIE_SIMULATED_PATH]; /* as the recording */
+    char reference[PTIE_SIMULATED_PATH], dark[PTIE_SIMULATED_PATH], target[PTIE_SIMULATED_PATH]; /* as the recording */
     char truth[PTIE_SIMULATED_PATH];                                /* HDF5 */
     char true_rig[PTIE_SIMULATED_PATH]; /* the rig as `ptie rig calibrate` ought to find it */
 } ptie_simulated_files;

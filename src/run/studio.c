@@ -17,8 +17,9 @@ struct ptie_studio {
     ptie_camera *camera; /* NULL: none */
     size_t pixels;
     float factor;                    /* of the rendered flow, to rad */
-    float *light;                    /* intensity at the object; NULL: 1 */
-    float *still_plus, *still_minus; /* planes without flow; NULL without a camera */
+    float *light; /* intensity at the object; NULL: 1 */
+    /* Planes without flow, and of the target; NULL without a camera. */
+    float *still_plus, *still_minus, *target_plus, *target_minus;
 };
 
 typedef struct studio_work {
@@ -82,10 +83,10 @@ static ptie_status plan_camera(ptie_studio *studio) {
     const ptie_flow_params *flow = &studio->params->flow;
     PTIE_TRY(ptie_camera_plan(&studio->camera, studio->params->camera, flow->width_px, flow->height_px, flow->pixel_m,
                               flow->seed));
-    PTIE_TRY(ptie_alloc_status(&studio->light, studio->pixels, sizeof(float), "light"));
-    PTIE_TRY(ptie_alloc_status(&studio->still_plus, studio->pixels, sizeof(float), "planes without flow"));
-    PTIE_TRY(ptie_alloc_status(&studio->still_minus, studio->pixels, sizeof(float), "planes without flow"));
-    ptie_camera_illuminate(studio->camera, studio->light);
+    float **const maps[] = {&studio->light, &studio->still_plus, &studio->still_minus, &studio->target_plus,
+                            &studio->target_minus};
+    for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
+        PTIE_TRY(ptie_alloc_status(maps[i], studio->pixels, sizeof(float), "planes without flow"));
     return PTIE_OK;
 }
 
@@ -104,20 +105,26 @@ static ptie_status find_factor(ptie_studio *studio, float *phase) {
     return PTIE_OK;
 }
 
+/* Planes without flow, first of the light with the target in it, then of the light alone. */
+static ptie_status light_still_planes(ptie_studio *studio, float *phase) {
+    void *scratch;
+    PTIE_TRY(ptie_alloc_status(&scratch, ptie_optics_scratch(studio->optics), 1, "scratch of the optics"));
+    memset(phase, 0, studio->pixels * sizeof *phase);
+    ptie_camera_illuminate(studio->camera, studio->light);
+    ptie_camera_target(studio->camera, studio->light);
+    ptie_status status = propagate(studio, studio->target_plus, studio->target_minus, phase, scratch);
+    ptie_camera_illuminate(studio->camera, studio->light);
+    if (status == PTIE_OK) status = propagate(studio, studio->still_plus, studio->still_minus, phase, scratch);
+    ptie_free(scratch);
+    return status;
+}
+
 /* What needs an image of its own: the flow's scale, and the planes without flow. */
 static ptie_status look_ahead(ptie_studio *studio) {
-    float *phase = NULL;
-    void *scratch = NULL;
-    ptie_status status;
-    PTIE_TRY_DONE(ptie_alloc_status(&phase, studio->pixels, sizeof *phase, "simulation"));
-    PTIE_TRY_DONE(find_factor(studio, phase));
-    if (studio->camera) {
-        PTIE_TRY_DONE(ptie_alloc_status(&scratch, ptie_optics_scratch(studio->optics), 1, "scratch of the optics"));
-        memset(phase, 0, studio->pixels * sizeof *phase);
-        status = propagate(studio, studio->still_plus, studio->still_minus, phase, scratch);
-    }
-done:
-    ptie_free(scratch);
+    float *phase;
+    PTIE_TRY(ptie_alloc_status(&phase, studio->pixels, sizeof *phase, "simulation"));
+    ptie_status status = find_factor(studio, phase);
+    if (status == PTIE_OK && studio->camera) status = light_still_planes(studio, phase);
     ptie_free(phase);
     return status;
 }
@@ -146,6 +153,8 @@ void ptie_studio_free(ptie_studio *studio) {
     ptie_free(studio->light);
     ptie_free(studio->still_plus);
     ptie_free(studio->still_minus);
+    ptie_free(studio->target_plus);
+    ptie_free(studio->target_minus);
     ptie_free(studio);
 }
 
@@ -164,7 +173,9 @@ ptie_status ptie_studio_frame(const ptie_studio *studio, float *const *image, fl
                              int64_t frame, void *scratch) {
     const studio_work work = carve(studio, &(ptie_slicer){.base = scratch});
     if (!studio->camera) return frame_of_planes(studio, image[0], image[1], phase, frame, work.plan);
-    const float *plus = studio->still_plus, *minus = studio->still_minus;
+    const bool target = exposure == PTIE_EXPOSE_TARGET;
+    const float *plus = target ? studio->target_plus : studio->still_plus,
+                *minus = target ? studio->target_minus : studio->still_minus;
     if (exposure == PTIE_EXPOSE_FLOW) {
         PTIE_TRY(render(studio, frame, phase));
         PTIE_TRY(propagate(studio, work.plus, work.minus, phase, work.plan));

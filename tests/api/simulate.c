@@ -173,19 +173,19 @@ static ptie_camera_params faulty(void) {
 
 static void a_camera_writes_the_same_bytes_with_any_threads(void **state) {
     (void)state;
-    static const char *const beside[] = {"", "_reference", "_dark"};
+    static const char *const beside[] = {"", "_reference", "_dark", "_target"};
     const ptie_camera_params camera = faulty();
-    unsigned char *first[4] = {0};
-    size_t bytes[4];
+    unsigned char *first[5] = {0};
+    size_t bytes[5];
     for (int threads = 1; threads <= 3; threads += 2) {
         ptie_simulate_params p = small(support_temporary("lab.npy"));
-        p.camera = &camera, p.reference_frames = 3, p.dark_frames = 2;
+        p.camera = &camera, p.reference_frames = 3, p.dark_frames = 2, p.target_frames = 2;
         p.propagation = PTIE_ANGULAR_SPECTRUM;
         simulate(&p, threads);
-        for (int i = 0; i < 4; i++) {
+        for (int i = 0; i < 5; i++) {
             char name[64];
             size_t length;
-            snprintf(name, sizeof name, i < 3 ? "lab%s.npy" : "lab_truth.h5", i < 3 ? beside[i] : "");
+            snprintf(name, sizeof name, i < 4 ? "lab%s.npy" : "lab_truth.h5", i < 4 ? beside[i] : "");
             unsigned char *file = support_read(support_temporary(name), &length);
             if (threads == 1) {
                 first[i] = file, bytes[i] = length;
@@ -253,7 +253,7 @@ static void the_rigs_of_a_camera_say_what_is_known_and_what_is_true(void **state
     ptie_simulate_params p = small(support_temporary("lab.npy"));
     ptie_rig known, truth;
     p.camera = &camera, p.rig = support_temporary("lab.ini");
-    p.reference_frames = 1, p.dark_frames = 1;
+    p.reference_frames = p.dark_frames = p.target_frames = 1;
     simulate(&p, 2);
     assert_ok(ptie_rig_read(&known, p.rig));
     assert_ok(ptie_rig_read(&truth, support_temporary("lab_true.ini")));
