@@ -112,6 +112,38 @@ Simulate, train, evaluate, run, denoise, measure
   phase.h5
   phase.html
 
+What a camera would have recorded, with what belongs to it
+  $ ptie simulate jet -o lab.mraw --camera $TESTS/../../examples/camera.ini --size 64 --frames 3 \
+  >   --reference-frames 2 --dark-frames 2 --target-frames 2
+  ! lab.mraw: 3 frames of 64 x 64 px with the truth; rig in lab.ini
+  $ ls
+  lab.cihx
+  lab.ini
+  lab.mraw
+  lab_dark.cihx
+  lab_dark.mraw
+  lab_reference.cihx
+  lab_reference.mraw
+  lab_target.cihx
+  lab_target.mraw
+  lab_true.ini
+  lab_truth.h5
+  $ ptie info lab_truth.h5 | grep -E "frames|width|unit|pixel"
+  frames       3
+  width        32 px
+  unit         rad
+  pixel        40 um
+  $ ptie reconstruct --rig lab_true.ini lab.mraw -o phase.h5 --truth lab_truth.h5 2> warnings | grep RMSE
+  RMSE (rad) * (glob)
+  $ printf '[light]\nbeem = 8 mm\n' > bad.ini
+  $ ptie simulate jet -o bad.mraw --camera bad.ini
+  ! ptie: bad.ini:2: unknown key 'beem' in [light] (did you mean 'beam'?)
+  [2]
+  $ printf '[sensor]\nlayout = separate\n' > two.ini
+  $ ptie simulate jet -o two.mraw --camera two.ini
+  ! ptie: two.mraw: cannot write two planes to this kind of file (expected .h5 or .hdf5)
+  [2]
+
 The summary of a run and the metrics agree
   $ ptie simulate jet -o jet.h5 --size 64 --frames 3
   ! jet.h5: 3 frames of 64 x 64 px with the truth; rig in jet.ini
