@@ -126,6 +126,8 @@ static int simulate(settings *s, int argc, char **argv) {
         return misused("simulate: name of the output too long");
     if (!p->rig) p->rig = s->rig;
     if (s->camera_path) {
+        if (strcmp(s->camera_path, p->rig) == 0)
+            return misused("simulate: the rig %s would be written over the camera file", p->rig);
         ptie_status status = ptie_camera_read(&s->camera, s->camera_path);
         if (status != PTIE_OK) return failed(status);
         p->camera = &s->camera;

@@ -140,7 +140,10 @@ What a camera would have recorded, with what belongs to it
   ! ptie: bad.ini:2: unknown key 'beem' in [light] (did you mean 'beam'?)
   [2]
   $ printf '[sensor]\nlayout = separate\n' > two.ini
-  $ ptie simulate jet -o two.mraw --camera two.ini
+  $ ptie simulate jet -o two.mraw --camera two.ini -f
+  ! ptie: simulate: the rig two.ini would be written over the camera file
+  [2]
+  $ ptie simulate jet -o two.mraw --camera two.ini --rig-out rig.ini
   ! ptie: two.mraw: cannot write two planes to this kind of file (expected .h5 or .hdf5)
   [2]
 
