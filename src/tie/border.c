@@ -12,13 +12,13 @@ int32_t ptie_tie_reach(const ptie_solver_params *p) {
     return (int32_t)fmin(ceil(furthest * p->wavelength_m / (2 * p->pixel_m * p->pixel_m)), longest);
 }
 
-/* Every `value` of a line spreads by `reach` to both sides.  seen: how far behind the last one is. */
+/* Every `value` of a line spreads by `reach` to both sides.  behind: how far the last one is; what it reaches is
+   marked as value + 2 until both sides are done. */
 static void spread_line(uint8_t *line, int32_t count, ptrdiff_t step, uint8_t value, int32_t reach) {
     for (int direction = 0; direction < 2; direction++) {
-        uint8_t *at = direction == 0 ? line : line + (count - 1) * step;
-        const ptrdiff_t forward = direction == 0 ? step : -step;
         int32_t behind = reach;
-        for (int32_t i = 0; i < count; i++, at += forward) {
+        for (int32_t i = 0; i < count; i++) {
+            uint8_t *at = line + (direction == 0 ? i : count - 1 - i) * step;
             if (*at == value)
                 behind = 0;
             else if (++behind <= reach)

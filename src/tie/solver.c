@@ -37,11 +37,11 @@ static ptie_status copy_mask(ptie_solver *solver) {
     ptie_solver_params *p = &solver->params;
     if (!p->mask) return PTIE_OK;
     const size_t pixels = ptie_solver_pixels(solver);
+    PTIE_TRY(ptie_alloc_status(&solver->mask, pixels, 1, "solver"));
+    for (size_t i = 0; i < pixels; i++) solver->mask[i] = p->mask[i] != 0;
+    p->mask = solver->mask;
     if (!memchr(p->mask, 1, pixels))
         return PTIE_FAIL(PTIE_EINVAL, "solver: the mask leaves no light (expected a pixel that is 1)");
-    PTIE_TRY(ptie_alloc_status(&solver->mask, pixels, 1, "solver"));
-    memcpy(solver->mask, p->mask, pixels);
-    p->mask = solver->mask;
     PTIE_TRY(ptie_alloc_status(&solver->reached, pixels, 1, "solver"));
     memcpy(solver->reached, p->mask, pixels);
     ptie_tie_spread(solver->reached, p->width_px, p->height_px, 1, ptie_tie_reach(p));
