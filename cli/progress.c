@@ -107,12 +107,19 @@ static double interval(progress_style style) {
     return style == PROGRESS_PLAIN ? 5 : style == PROGRESS_JSON ? 0.5 : 0.1;
 }
 
+/* Since the first report: a task that goes on where another stopped begins with what that one had done. */
+static double rate_of(const progress_bar *p, uint64_t done, double now) {
+    if (done > p->first_done) return (double)(done - p->first_done) / (now - p->first_s);
+    return now > p->start_s ? (double)done / (now - p->start_s) : 0;
+}
+
 int progress_report(void *user, uint64_t done, uint64_t total, const char *note) {
     progress_bar *p = user;
-    double now = now_s(), elapsed = now - p->start_s;
+    const double now = now_s();
+    if (!p->begun) p->begun = true, p->first_done = done, p->first_s = now;
     bool due = now - p->shown_s >= interval(p->style) || (done == total && p->shown_done != total);
     if (p->style != PROGRESS_NONE && due) {
-        double rate = elapsed > 0 ? (double)done / elapsed : 0;
+        const double rate = rate_of(p, done, now);
         double eta_s = done > 0 ? (double)(total - done) / rate : (double)NAN;
         char eta[24] = "-:--";
         if (isfinite(eta_s)) clock_text(eta, eta_s);

@@ -18,8 +18,9 @@ extern const char *const progress_styles[]; /* their names, NULL-terminated */
 typedef struct progress_bar {
     progress_style style;
     const char *task, *unit; /* "dataset", "samples" */
-    double start_s, shown_s;
-    uint64_t shown_done;
+    double start_s, first_s, shown_s; /* of the task, its first report, and the one shown last */
+    uint64_t first_done, shown_done;
+    bool begun;
     bool on_line; /* the cursor stands behind a bar */
 } progress_bar;
 

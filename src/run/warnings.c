@@ -38,7 +38,8 @@ static void warn_of_planes(ptie_run_summary *s, const ptie_rig *rig, const ptie_
         warn(s, "saturation: up to %.2g %% of a frame's pixels reach %g counts", 100 * saturated,
              rig->saturation_counts);
     if (imbalance.mean > LARGEST_IMBALANCE)
-        warn(s, "planes unequal: their means are apart by %.2g %% (expected below %.2g %%; see match_gain, and 'ptie rig calibrate')",
+        warn(s, "planes unequal: their means are apart by %.2g %% (expected below %.2g %%; see match_gain, and "
+                "'ptie rig calibrate')",
              100 * imbalance.mean, 100 * LARGEST_IMBALANCE);
     if (brightness.std > LARGEST_FLICKER * brightness.mean)
         warn(s, "light unsteady: the brightness varies by %.2g %% rms over the frames",
