@@ -136,13 +136,13 @@ typedef struct ptie_registration {
 } ptie_registration;
 
 /* Finds where a plane lies from what both planes show of the same, unmoving light: best the mean
-   of frames of a target in the field, freed of the sensor's own structure by a flat field (P4), which
-   does not move with the planes (P7).  They may differ in gain, level and, as far as structure
-   survives, in defocus.  Looks for rotations up to 9 degrees, magnifications 0.9..1.1, shifts up to a
-   quarter of the frame.  On a texture of 4 % with 1 % of noise in each plane, 256 x 256 px, the shift
-   is good to 0.008 px.  mask: 1 = light of the fixed plane, NULL: all.  Sizes 64..32768 px.
-   Allocates.  Errors: PTIE_ENUMERIC (not finite, no texture, nothing in common), PTIE_EINVAL,
-   PTIE_ENOMEM. */
+   of frames of a target in the field, freed of the sensor's own structure by a flat field (P4),
+   which does not move with the planes (P7).  They may differ in gain, level and, as far as
+   structure survives, in defocus.  Looks for rotations up to 9 degrees, magnifications 0.9..1.1,
+   shifts up to a quarter of the frame.  On a texture of 4 % with 1 % of noise in each plane, 256 x
+   256 px, the shift is good to 0.008 px.  mask: 1 = light of the fixed plane, NULL: all.
+   Sizes 64..32768 px. Allocates.  Errors: PTIE_ENUMERIC (not finite, no texture, nothing in
+   common), PTIE_EINVAL, PTIE_ENOMEM. */
 PTIE_API PTIE_NODISCARD ptie_status ptie_register(ptie_registration *out, const float *fixed,
                                                   const float *moving, const uint8_t *mask,
                                                   int32_t width_px, int32_t height_px);
