@@ -37,11 +37,11 @@ simulate
     ptie simulate shock -o shock.h5 --family physical \
         --propagation angular-spectrum --boundary mirror
   
-    # what a polarisation camera would have written: MRAW, with a no-flow and a
-    # dark recording, the truth and the rig beside it
-    ptie simulate jet -o lab.mraw --family physical --size 512 \
-        --propagation angular-spectrum --boundary mirror \
-        --camera examples/camera.ini
+    # what a polarisation camera would have written: MRAW, with recordings of
+    # no flow, of the dark and of a target, the truth and the rig beside it
+    ptie simulate jet -o lab.mraw --camera examples/camera.ini --seed 2 \
+        --size 512 --pixel "10 um" --defocus "20 mm" --family physical \
+        --propagation angular-spectrum --boundary mirror
   
     # every flow there is, as one figure
     ptie simulate --gallery gallery.png
@@ -67,6 +67,8 @@ simulate
         --reference-frames N  with --camera: frames of the no-flow recording
                               (default: 32)
         --dark-frames N       with --camera: frames of the dark recording
+                              (default: 32)
+        --target-frames N     with --camera: frames of the calibration target
                               (default: 32)
         --family NAME         kind of flow model (parametric, physical; default:
                               parametric)
@@ -95,8 +97,9 @@ simulate
   to its mean) and /entry/truth/phase (rad).
   
   With --camera it holds counts, in the format of FILE's ending if the camera has
-  a mosaic. Beside it: FILE_reference and FILE_dark, FILE_truth.h5, the rig as a
-  lab knows it and, as FILE_true.ini, as a perfect calibration would find it.
+  a mosaic. Beside it: FILE_reference (no flow), FILE_dark, FILE_target (dots for
+  'ptie rig calibrate'), FILE_truth.h5, the rig as a lab knows it and, as
+  FILE_true.ini, as a perfect calibration would find it.
 
 dataset
   $ ptie dataset --help

@@ -136,7 +136,7 @@ What a camera would have recorded, with what belongs to it
   $ ptie reconstruct --rig lab_true.ini lab.mraw -o phase.h5 --truth lab_truth.h5 2> warnings | grep RMSE
   RMSE (rad) * (glob)
   $ printf '[light]\nbeem = 8 mm\n' > bad.ini
-  $ ptie simulate jet -o bad.mraw --camera bad.ini
+  $ ptie simulate jet -o other.mraw --camera bad.ini
   ! ptie: bad.ini:2: unknown key 'beem' in [light] (did you mean 'beam'?)
   [2]
   $ printf '[sensor]\nlayout = separate\n' > two.ini
