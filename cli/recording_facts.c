@@ -18,7 +18,7 @@ static void add_shape(facts *f, const ptie_recording_info *info) {
     add_number(f, "width", info->width_px, "%d px", info->width_px);
     add_number(f, "height", info->height_px, "%d px", info->height_px);
     if (info->roi_x_px > 0 || info->roi_y_px > 0)
-        add_text(f, "on the sensor", "from x=%d, y=%d", info->roi_x_px, info->roi_y_px);
+        add_text(f, "corner", "x=%d, y=%d on the sensor", info->roi_x_px, info->roi_y_px);
     if (info->bottom_up) add_text(f, "rows", "bottom row first in the file; read top row first");
 }
 

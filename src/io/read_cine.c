@@ -101,11 +101,7 @@ static ptie_status count_frames(const cine_recording *file, ptie_recording_info 
     if (whole == 0)
         return PTIE_FAIL(PTIE_EFORMAT, "%s: no frame of %d x %d px in the file", file->path, info->width_px,
                          info->height_px);
-    info->frames = whole;
-    info->recorded = file->cine.images;
-    if (whole < info->recorded)
-        snprintf(info->warning, sizeof info->warning, "file is cut short: %lld of %lld frames are there",
-                 (long long)whole, (long long)info->recorded);
+    ptie_info_set_frames(info, whole, file->cine.images);
     return PTIE_OK;
 }
 

@@ -112,11 +112,7 @@ static ptie_status count_frames(mraw *file, ptie_recording_info *info, const pti
     PTIE_TRY(choose_rows(file, (uint64_t)cih->frames));
     const int64_t there = (int64_t)(file->file_bytes / file->frame_bytes);
     PTIE_TRY(ptie_check_fits(file->path, file->frame_bytes, file->file_bytes, 1));
-    info->recorded = cih->frames;
-    info->frames = there < cih->frames ? there : cih->frames;
-    if (there < cih->frames)
-        snprintf(info->warning, sizeof info->warning, "file is cut short: %lld of %lld frames are there",
-                 (long long)there, (long long)cih->frames);
+    ptie_info_set_frames(info, there, cih->frames);
     return PTIE_OK;
 }
 

@@ -176,12 +176,8 @@ static ptie_status count_frames(const raw *file, ptie_recording_info *info, uint
                          file->path, (unsigned long long)frame_bytes, (unsigned long long)file->offset,
                          (unsigned long long)file_bytes);
     const int64_t there = 1 + (int64_t)((file_bytes - file->offset - frame_bytes) / file->stride);
-    info->frames = announced > 0 && announced < there ? announced : there;
-    info->recorded = announced > 0 ? announced : there;
-    if (there < info->recorded)
-        snprintf(info->warning, sizeof info->warning, "file is cut short: %lld of %lld frames are there",
-                 (long long)there, (long long)info->recorded);
-    else if (announced == 0 && (file_bytes - file->offset - frame_bytes) % file->stride != 0)
+    ptie_info_set_frames(info, there, announced > 0 ? announced : there);
+    if (announced == 0 && (file_bytes - file->offset - frame_bytes) % file->stride != 0)
         snprintf(info->warning, sizeof info->warning, "bytes are left over behind the last frame");
     return PTIE_OK;
 }

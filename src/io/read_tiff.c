@@ -201,11 +201,7 @@ static ptie_status take_images(tiff_stack *stack, ptie_recording_info *info, int
     if (stack->first_image > stack->file_bytes) return damaged(stack, 0);
     PTIE_TRY(ptie_check_fits(stack->path, frame_bytes, stack->file_bytes - stack->first_image, 1));
     const int64_t there = (int64_t)((stack->file_bytes - stack->first_image) / frame_bytes);
-    info->recorded = images;
-    info->frames = there < images ? there : images;
-    if (there < images)
-        snprintf(info->warning, sizeof info->warning, "file is cut short: %lld of %lld frames are there",
-                 (long long)there, (long long)images);
+    ptie_info_set_frames(info, there, images);
     return ptie_input_open(&stack->images, stack->path, NULL);
 }
 

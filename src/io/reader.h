@@ -39,6 +39,9 @@ extern const ptie_reader ptie_read_sequence, ptie_read_mraw, ptie_read_raw, ptie
 ptie_status ptie_info_set_size(ptie_recording_info *info, const char *path, uint64_t width,
                                uint64_t height);
 
+/* Of `announced` frames the first `there` are in the file: fewer are a warning. */
+void ptie_info_set_frames(ptie_recording_info *info, int64_t there, int64_t announced);
+
 /* A frame that needs `needed` bytes cannot be in a file of `found`.  `densest`: how many bytes one
    byte of the file can stand for (1 without compression). */
 ptie_status ptie_check_fits(const char *path, uint64_t needed, uint64_t found, uint64_t densest);

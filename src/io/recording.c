@@ -33,6 +33,14 @@ ptie_status ptie_info_set_size(ptie_recording_info *info, const char *path, uint
     return PTIE_OK;
 }
 
+void ptie_info_set_frames(ptie_recording_info *info, int64_t there, int64_t announced) {
+    info->frames = there < announced ? there : announced;
+    info->recorded = announced;
+    if (there < announced)
+        snprintf(info->warning, sizeof info->warning, "file is cut short: %lld of %lld frames are there",
+                 (long long)there, (long long)announced);
+}
+
 ptie_status ptie_check_fits(const char *path, uint64_t needed, uint64_t found, uint64_t densest) {
     if (needed / densest <= found) return PTIE_OK;
     return PTIE_FAIL(PTIE_EFORMAT,

@@ -2,24 +2,24 @@
 
 A Photron recording, by any of its files
   $ ptie info $TESTS/../golden/cameras/xml.mraw
-  kind           recording
-  format         MRAW
-  frames         3
-  width          7 px
-  height         5 px
-  on the sensor  from x=129, y=64
-  sample         u12 packed
-  bit depth      12
-  black level    0
-  white level    4095
-  frame rate     20 Hz (one of 2500 at 50 kHz)
-  duration       150 ms
-  exposure       5 us
-  camera         FASTCAM Test X
-  date           2024/2/29 23:59
-  trigger        mode 7
-  comment        a < b & c
-  first frame    0 .. 1242, mean 621
+  kind         recording
+  format       MRAW
+  frames       3
+  width        7 px
+  height       5 px
+  corner       x=129, y=64 on the sensor
+  sample       u12 packed
+  bit depth    12
+  black level  0
+  white level  4095
+  frame rate   20 Hz (one of 2500 at 50 kHz)
+  duration     150 ms
+  exposure     5 us
+  camera       FASTCAM Test X
+  date         2024/2/29 23:59
+  trigger      mode 7
+  comment      a < b & c
+  first frame  0 .. 1242, mean 621
   $ ptie info $TESTS/../golden/cameras/xml.mraw > a; ptie info $TESTS/../golden/cameras/xml.cihx | diff a -
 
 One that was cut short, and a header without frames

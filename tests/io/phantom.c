@@ -8,34 +8,6 @@
 #include "golden.h"
 #include "io/recording.h"
 
-static const char *golden_cine(const char *name) {
-    char path[200];
-    snprintf(path, sizeof path, "tests/golden/cameras/%s", name);
-    return support_source(path);
-}
-
-static ptie_recording *open_recording(const char *path) {
-    ptie_recording *recording;
-    print_message("# %s\n", path);
-    assert_ok(ptie_recording_open(&recording, path));
-    return recording;
-}
-
-/* Frame t is factor * (x + 10 y + 50 t); the last frame first. */
-static void check_frames(ptie_recording *recording, int64_t frames, double factor) {
-    float data[GOLDEN_PIXELS];
-    const ptie_recording_info *info = ptie_recording_get_info(recording);
-    assert_string_equal(info->format, "CINE");
-    assert_int_equal(info->width_px, GOLDEN_WIDTH);
-    assert_int_equal(info->height_px, GOLDEN_HEIGHT);
-    assert_int_equal(info->frames, frames);
-    for (int64_t t = frames - 1; t >= 0; t--) {
-        assert_ok(ptie_recording_read(recording, t, data));
-        for (int32_t i = 0; i < GOLDEN_PIXELS; i++)
-            assert_true((double)data[i] == factor * golden_value("u", t, i));
-    }
-}
-
 static void every_packing_is_read(void **state) {
     (void)state;
     static const struct {
@@ -49,12 +21,12 @@ static void every_packing_is_read(void **state) {
                  {"packed10.cine:/codes", "u10 packed", 7, 10, false},
                  {"packed12.cine", "u12 packed", 27, 12, true}};
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-        ptie_recording *recording = open_recording(golden_cine(files[i].name));
+        ptie_recording *recording = golden_open(golden_camera(files[i].name));
         const ptie_recording_info *info = ptie_recording_get_info(recording);
         assert_string_equal(info->sample, files[i].sample);
         assert_int_equal(info->bit_depth, files[i].depth);
         assert_int_equal(info->bottom_up, files[i].bottom_up);
-        check_frames(recording, 3, files[i].factor);
+        golden_check_camera(recording, "CINE", 3, files[i].factor);
         ptie_recording_close(recording);
     }
 }
@@ -64,7 +36,7 @@ static void every_packing_is_read(void **state) {
 static void ten_bits_are_expanded(void **state) {
     (void)state;
     float data[GOLDEN_PIXELS];
-    ptie_recording *recording = open_recording(golden_cine("packed10.cine"));
+    ptie_recording *recording = golden_open(golden_camera("packed10.cine"));
     const ptie_recording_info *info = ptie_recording_get_info(recording);
     assert_int_equal(info->bit_depth, 12);
     assert_true(info->black_level == 64 && info->white_level == 4064);
@@ -82,7 +54,7 @@ static void ten_bits_are_expanded(void **state) {
 
 static void a_header_is_understood(void **state) {
     (void)state;
-    ptie_recording *recording = open_recording(golden_cine("plain16.cine"));
+    ptie_recording *recording = golden_open(golden_camera("plain16.cine"));
     const ptie_recording_info *info = ptie_recording_get_info(recording);
     assert_string_equal(info->camera, "v2512, serial 4711");
     assert_string_equal(info->date, "2023-11-14 22:13:20 UTC");
@@ -101,7 +73,7 @@ static void a_header_is_understood(void **state) {
 /* Fields that an old SETUP does not have yet are not read from what follows it. */
 static void an_old_header_says_less(void **state) {
     (void)state;
-    ptie_recording *recording = open_recording(golden_cine("old.cine"));
+    ptie_recording *recording = golden_open(golden_camera("old.cine"));
     const ptie_recording_info *info = ptie_recording_get_info(recording);
     assert_string_equal(info->camera, "Phantom");
     assert_string_equal(info->comment, "");
@@ -114,16 +86,16 @@ static void an_old_header_says_less(void **state) {
 static void a_short_file_is_read_as_far_as_it_goes(void **state) {
     (void)state;
     size_t bytes;
-    unsigned char *data = support_read(golden_cine("old.cine"), &bytes);
+    unsigned char *data = support_read(golden_camera("old.cine"), &bytes);
     const char *path = support_temporary("short.cine");
     for (int64_t frames = 2; frames >= 1; frames--) {
         support_write(path, data, bytes - (size_t)(3 - frames) * 78); /* 8 + 70 bytes of a frame, or a few more */
-        ptie_recording *recording = open_recording(path);
+        ptie_recording *recording = golden_open(path);
         const ptie_recording_info *info = ptie_recording_get_info(recording);
         char expected[100];
         snprintf(expected, sizeof expected, "file is cut short: %d of 3 frames are there", (int)frames);
         assert_string_equal(info->warning, expected);
-        check_frames(recording, frames, 27);
+        golden_check_camera(recording, "CINE", frames, 27);
         ptie_recording_close(recording);
     }
     support_write(path, data, 320);
@@ -149,7 +121,7 @@ static ptie_status read_all(const char *path) {
 static void damage_is_survived(void **state) {
     (void)state;
     size_t bytes;
-    unsigned char *data = support_read(golden_cine("old.cine"), &bytes);
+    unsigned char *data = support_read(golden_camera("old.cine"), &bytes);
     const char *path = support_temporary("changed.cine");
     for (size_t i = 0; i < bytes; i++)
         for (int c = 0; c < 3; c++) {
@@ -192,7 +164,7 @@ static void headers_that_lie(void **state) {
     for (size_t i = 0; i < sizeof lies / sizeof *lies; i++) {
         ptie_recording *recording;
         const char *path = support_temporary("lie.cine");
-        unsigned char *data = support_read(golden_cine("old.cine"), &bytes);
+        unsigned char *data = support_read(golden_camera("old.cine"), &bytes);
         put(data, lies[i].at, lies[i].bytes, lies[i].value);
         support_write(path, data, bytes);
         free(data);

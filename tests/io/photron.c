@@ -8,34 +8,6 @@
 #include "golden.h"
 #include "io/recording.h"
 
-static const char *golden_camera(const char *name) {
-    char path[200];
-    snprintf(path, sizeof path, "tests/golden/cameras/%s", name);
-    return support_source(path);
-}
-
-static ptie_recording *open_recording(const char *path) {
-    ptie_recording *recording;
-    print_message("# %s\n", path);
-    assert_ok(ptie_recording_open(&recording, path));
-    return recording;
-}
-
-/* Frame t is factor * (x + 10 y + 50 t); the last frame first. */
-static void check_frames(ptie_recording *recording, double factor) {
-    float data[GOLDEN_PIXELS];
-    const ptie_recording_info *info = ptie_recording_get_info(recording);
-    assert_string_equal(info->format, "MRAW");
-    assert_int_equal(info->width_px, GOLDEN_WIDTH);
-    assert_int_equal(info->height_px, GOLDEN_HEIGHT);
-    assert_int_equal(info->frames, 3);
-    for (int64_t t = 2; t >= 0; t--) {
-        assert_ok(ptie_recording_read(recording, t, data));
-        for (int32_t i = 0; i < GOLDEN_PIXELS; i++)
-            assert_true((double)data[i] == factor * golden_value("u", t, i));
-    }
-}
-
 static void every_packing_is_read(void **state) {
     (void)state;
     static const struct {
@@ -48,19 +20,19 @@ static void every_packing_is_read(void **state) {
                  {"xml.mraw", "u12 packed", 27, 12}, {"xml.cihx", "u12 packed", 27, 12},
                  {"u16.cih", "u16", 27, 12}};
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-        ptie_recording *recording = open_recording(golden_camera(files[i].name));
+        ptie_recording *recording = golden_open(golden_camera(files[i].name));
         const ptie_recording_info *info = ptie_recording_get_info(recording);
         assert_string_equal(info->sample, files[i].sample);
         assert_int_equal(info->bit_depth, files[i].depth);
         assert_string_equal(info->warning, "");
-        check_frames(recording, files[i].factor);
+        golden_check_camera(recording, "MRAW", 3, files[i].factor);
         ptie_recording_close(recording);
     }
 }
 
 static void a_text_header_is_understood(void **state) {
     (void)state;
-    ptie_recording *recording = open_recording(golden_camera("u12.cih"));
+    ptie_recording *recording = golden_open(golden_camera("u12.cih"));
     const ptie_recording_info *info = ptie_recording_get_info(recording);
     assert_string_equal(info->camera, "FASTCAM Test");
     assert_string_equal(info->date, "2024/2/29 23:59");
@@ -76,7 +48,7 @@ static void a_text_header_is_understood(void **state) {
 
 static void an_xml_header_is_understood(void **state) {
     (void)state;
-    ptie_recording *recording = open_recording(golden_camera("xml.cihx"));
+    ptie_recording *recording = golden_open(golden_camera("xml.cihx"));
     const ptie_recording_info *info = ptie_recording_get_info(recording);
     assert_string_equal(info->camera, "FASTCAM Test X");
     assert_string_equal(info->date, "2024/2/29 23:59");
@@ -91,11 +63,11 @@ static void an_xml_header_is_understood(void **state) {
 
 static void a_short_file_is_read_as_far_as_it_goes(void **state) {
     (void)state;
-    ptie_recording *recording = open_recording(golden_camera("short.mraw"));
+    ptie_recording *recording = golden_open(golden_camera("short.mraw"));
     const ptie_recording_info *info = ptie_recording_get_info(recording);
     assert_string_equal(info->warning, "file is cut short: 3 of 9 frames are there");
     assert_int_equal(info->recorded, 9);
-    check_frames(recording, 27);
+    golden_check_camera(recording, "MRAW", 3, 27);
     ptie_recording_close(recording);
 }
 
@@ -241,7 +213,7 @@ static void what_is_written_is_read(void **state) {
         const char *path = support_temporary(i ? "b.mraw" : "a.mraw");
         snprintf(info.sample, sizeof info.sample, "%s", samples[i]);
         assert_ok(write_frames(path, &info));
-        ptie_recording *recording = open_recording(path);
+        ptie_recording *recording = golden_open(path);
         const ptie_recording_info *found = ptie_recording_get_info(recording);
         assert_string_equal(found->sample, i ? "u16" : "u12 packed");
         assert_string_equal(found->camera, camera.camera);
@@ -252,7 +224,7 @@ static void what_is_written_is_read(void **state) {
         assert_int_equal(found->bit_depth, 12);
         assert_int_equal(found->roi_x_px, camera.roi_x_px);
         assert_int_equal(found->roi_y_px, camera.roi_y_px);
-        check_frames(recording, 27);
+        golden_check_camera(recording, "MRAW", 3, 27);
         ptie_recording_close(recording);
     }
 }
