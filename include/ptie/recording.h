@@ -6,7 +6,7 @@
  *         ("flow_%02d.png") as numbered frames.
  * Writes  NPY, TIFF, HDF5 (NeXus), each of float32 or of 8- or 16-bit integers; PNG (8- or 16-bit integers, or
  *         16 bit with the scale in its text chunks; a pattern for several frames); MRAW with its CIHX
- *         (counts of a camera).
+ *         (counts of a camera); MAT version 5; video (Y4M; MP4 where ffmpeg is installed).
  */
 #ifndef PTIE_RECORDING_H
 #define PTIE_RECORDING_H
@@ -63,22 +63,24 @@ PTIE_API PTIE_NODISCARD ptie_status ptie_recording_read(ptie_recording *recordin
 
 typedef struct ptie_writer ptie_writer;
 
-/* Creates a file for `info->frames` frames (0: not known yet) of one map; the kind is chosen by the
-   ending of `path`: .npy .tif .tiff .h5 .hdf5 .png .mraw.  info->unit, frame_rate_hz, pixel_m are stored where
-   the format can.  info->sample says how values are stored: "u1" to "u8" as 8-bit integers, "u9" to "u16" as
-   16-bit integers, anything else, "" too, as float32.  `name` is what the map is ("phase", "denoised"): letters,
-   digits, '_', '-'.  The file
-   appears under `path` only at ptie_writer_close.  A PNG sequence replaces all of an older one, or none: frames
-   with the next numbers are removed with `overwrite`, and PTIE_EEXIST without.  .mraw rounds the values to
-   counts 0 .. 2^info->bit_depth - 1 (0: 12) and clips them; 12 bits are packed unless info->sample is "u16", others
-   take 16; "X.cihx" beside it says frame rate, exposure, corner on the sensor, camera, date, comment.  Errors: PTIE_EINVAL, PTIE_EEXIST, PTIE_EIO, PTIE_ENOMEM,
-   PTIE_EUNSUPPORTED (ending). */
+/* Creates a file for `info->frames` frames (0: not known yet) of one map; the kind is chosen by the ending of `path`:
+   .h5 .hdf5 .tif .tiff .npy .mat .png .y4m .mp4 .mraw (docs/formats.md).  `name` is what the map is ("phase",
+   "denoised"): letters, digits, '_', '-'.  info->unit, frame_rate_hz, pixel_m are stored where the format can.
+   info->sample says how values are stored: "u1" to "u8" as 8-bit integers, "u9" to "u16" as 16-bit integers, anything
+   else, "" too, as float32.
+     .png   a sequence replaces all of an older one, or none: frames with the next numbers are removed with `overwrite`,
+            and PTIE_EEXIST without
+     .mraw  rounds to counts 0 .. 2^info->bit_depth - 1 (0: 12) and clips; 12 bits are packed unless info->sample is
+            "u16", others take 16; "X.cihx" beside it says frame rate, exposure, corner on the sensor, camera, date, comment
+     .y4m   grey, "u8" as it is, else the extent of the first frame; .mp4 the same by the program ffmpeg
+   The file appears under `path` only at ptie_writer_close.  Errors: PTIE_EINVAL, PTIE_EEXIST, PTIE_EIO, PTIE_ENOMEM,
+   PTIE_EUNSUPPORTED (ending; a MAT variable of 2 GiB; no ffmpeg). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_writer_create(ptie_writer **out, const char *path,
                                                        const char *name,
                                                        const ptie_recording_info *info,
                                                        bool overwrite);
 /* Appends one frame of height x width floats.  Errors: PTIE_EINVAL (a second frame for one PNG), PTIE_ESTATE
-   (more frames than announced), PTIE_EIO, PTIE_ENOMEM, PTIE_ENUMERIC (PNG, MRAW: NaN or infinity; integers: a value that
+   (more frames than announced), PTIE_EIO, PTIE_ENOMEM, PTIE_ENUMERIC (PNG, MRAW, video: NaN or infinity; integers: a value that
    is not one of the sample type), PTIE_EEXIST. */
 PTIE_API PTIE_NODISCARD ptie_status ptie_writer_append(ptie_writer *writer, const float *frame);
 /* Completes the file and frees the writer, also on failure (then no file is left).  Errors: PTIE_EIO,

@@ -14,12 +14,12 @@ typedef struct ptie_writer_job {
     ptie_recording_info info; /* frames 0: not known yet */
     bool overwrite;
     const char *source, *command; /* the recording it was made from, and how; NULL: not told */
-    bool compress;    /* HDF5: shuffled and deflated */
-    ptie_pool *pool;  /* compresses on its threads; NULL: on the caller's */
-    double low, high; /* images, video: values of black and white; equal: see the format */
-    const uint32_t *colours; /* video: 256 of 0xRRGGBB; NULL: grey */
-    double played_hz;        /* video: frames per second when shown; 0 means 25 */
-    ptie_sample stored; /* f32, u8 or u16, from info.sample; set by ptie_io_create */
+    bool compress;                /* HDF5: shuffled and deflated */
+    ptie_pool *pool;              /* compresses on its threads; NULL: on the caller's */
+    double low, high;             /* images, video: values of black and white; equal: see the format */
+    const uint32_t *colours;      /* video: 256 of 0xRRGGBB; NULL: grey */
+    double played_hz;             /* video: frames per second when shown; 0 means 25 */
+    ptie_sample stored;           /* f32, u8 or u16, from info.sample; set by ptie_io_create */
 } ptie_writer_job;
 
 /* Bytes of a frame as stored. */
