@@ -7,27 +7,30 @@
 #include "rig.h"
 
 static const char examples[] =
-    "  # frames without flow; lab.ini is changed in place, comments stay\n"
-    "  ptie rig calibrate lab.ini --reference noflow.mraw\n\n"
-    "  # a target in the field of view; another file is written\n"
-    "  ptie rig calibrate lab.ini --reference target.mraw -o calibrated.ini\n";
+    "  # a target in the field of view; lab.ini is changed in place, comments stay\n"
+    "  ptie rig calibrate lab.ini --target target.mraw --reference noflow.mraw\n\n"
+    "  # frames without flow alone; another file is written\n"
+    "  ptie rig calibrate lab.ini --reference noflow.mraw -o calibrated.ini\n";
 
 static const char notes[] =
-    "The planes must show the same unmoving structure: a ruler, a target, the nozzle's\n"
-    "edge, dust in the optics before the beam is split. Dust on the sensor does not\n"
-    "move with a plane and misleads; subtracting the dark and a target help.\n";
+    "The planes must show the same unmoving structure: a ruler, dots on glass, the\n"
+    "nozzle's edge. Dust on the sensor and fringes of one plane mislead: they do not\n"
+    "move with a plane. A target is divided by the reference, which takes them out.\n"
+    "Take the recordings with the same light and region of the sensor.\n";
 
 enum { KEYS = 5, VALUE_BYTES = 32 };
 static const char *const roles[PTIE_ROLES] = {"plus", "minus", "zero", "plus2", "minus2"};
 static const char *const keys[KEYS] = {"gain", "shift_x", "shift_y", "magnification", "rotation"};
 
 typedef struct settings {
-    const char *rig_path, *reference, *output;
+    const char *rig_path, *target, *reference, *output;
     bool force;
 } settings;
 
 static int parse(settings *s, int argc, char **argv) {
     const option options[] = {
+        {0, "target", OPTION_TEXT, &s->target, "FILE",
+         .help = "recording of a target in the object's plane; if not given, the reference"},
         {0, "reference", OPTION_TEXT, &s->reference, "FILE",
          .help = "recording without flow; if not given, the rig's"},
         {'o', "output", OPTION_TEXT, &s->output, "FILE",
@@ -38,7 +41,7 @@ static int parse(settings *s, int argc, char **argv) {
                                  .purpose = "Measures where the planes lie on the grid of I+ (shift, magnification, "
                                             "rotation) and their gains, and writes them into the rig.",
                                  .examples = examples,
-                                 .synopsis = "RIG [--reference FILE] [-o FILE] [options]",
+                                 .synopsis = "RIG [--target FILE] [--reference FILE] [-o FILE] [options]",
                                  .notes = notes,
                                  .least = 1,
                                  .most = 1,
@@ -103,10 +106,12 @@ int rig_calibrate(int argc, char **argv) {
     ptie_rig_init(&rig);
     ptie_status status = ptie_rig_load(&rig, s.rig_path);
     if (status != PTIE_OK) return failed(status);
-    const char *reference = s.reference ? s.reference : rig.reference;
-    if (!reference[0])
-        return misused("rig calibrate: missing reference (expected --reference FILE, or 'reference' in the rig)");
-    status = ptie_rig_calibrate(calibration, &rig, reference, NULL);
+    if (s.reference) snprintf(rig.reference, sizeof rig.reference, "%s", s.reference);
+    const char *recording = s.target ? s.target : rig.reference;
+    if (!recording[0])
+        return misused("rig calibrate: missing frames without flow (expected --target or --reference FILE, or "
+                       "'reference' in the rig)");
+    status = ptie_rig_calibrate(calibration, &rig, recording, NULL);
     if (status == PTIE_OK) status = write_rig(&s, calibration, &rig);
     if (status != PTIE_OK) return failed(status);
     say("%s: written", s.output ? s.output : s.rig_path);

@@ -6,7 +6,7 @@
 #include "json.h"
 #include "rig.h"
 
-static const char examples[] = "  ptie rig check lab.ini flow.mraw\n"
+static const char examples[] = "  ptie rig check lab.ini flow.mraw --target target.mraw\n"
                                "  ptie rig check lab.ini --plus p.tif --minus m.tif --json\n";
 
 static const char notes[] =
@@ -17,12 +17,14 @@ static const char notes[] =
 static const char *const verdicts[] = {"ok", "warn", "FAIL"};
 
 typedef struct settings {
-    const char *rig_path, *recording, *plane[PTIE_ROLES], *reference;
+    const char *rig_path, *recording, *plane[PTIE_ROLES], *target;
     bool json;
 } settings;
 
 static int parse(settings *s, int argc, char **argv) {
     const option options[] = {
+        {0, "target", OPTION_TEXT, &s->target, "FILE",
+         .help = "recording of a target in the object's plane: measures registration"},
         PLANE_OPTIONS(s->plane),
         {0, "json", OPTION_FLAG, &s->json, .help = "findings as JSON instead of lines"},
     };
@@ -77,7 +79,7 @@ int rig_check(int argc, char **argv) {
     if (code != GO_ON) return code;
     ptie_rig_init(&rig);
     ptie_status status = ptie_rig_load(&rig, s.rig_path);
-    if (status == PTIE_OK) status = ptie_rig_check(&rig, s.recording, s.plane, &report);
+    if (status == PTIE_OK) status = ptie_rig_check(&rig, s.recording, s.plane, s.target, &report);
     if (status != PTIE_OK) return failed(status);
     if (s.json)
         print_json(&report);

@@ -118,9 +118,11 @@ typedef struct ptie_rig_report {
 /* Compares a rig with a recording, of which it reads some frames: sizes, saturation, exposure, whether a mosaic is one
    (P14), the planes' means, flat field, mask, registration left over (P7), at which periods linear TIE still holds
    (P13), noise and what it will be in the phase (M8).  recording, plane: as in ptie_run_params; plane may be NULL.
+   target: frames of a target in the object's plane, without which registration is not measured; NULL: none.
    A finding that is wrong is no error.  Errors: those of reading. */
 PTIE_API PTIE_NODISCARD ptie_status ptie_rig_check(const ptie_rig *rig, const char *recording,
-                                                   const char *const plane[PTIE_ROLES], ptie_rig_report *report);
+                                                   const char *const plane[PTIE_ROLES], const char *target,
+                                                   ptie_rig_report *report);
 
 /* ---- Calibration ---- */
 
@@ -130,8 +132,9 @@ typedef struct ptie_plane_calibration {
     double gain, gain_deviation; /* that brings the plane's mean to that of I+; its standard deviation over frames */
 } ptie_plane_calibration;
 
-/* Measures where the planes lie and their gains in frames without flow (of a target, or of structured light): the
-   rig's own registration and gains are not used.  recording, plane: as in ptie_rig_check.  Errors: those of reading;
+/* Measures where the planes lie and their gains in frames without flow, best of a target in the object's plane: the
+   rig's own registration and gains are not used.  Planes are divided by the rig's reference, unless `recording` is
+   it, which takes out dust on the sensor: it lies at the same place in every plane, wherever that is.  recording, plane: as in ptie_rig_check.  Errors: those of reading;
    PTIE_EINVAL (a rig of one plane). */
 PTIE_API PTIE_NODISCARD ptie_status ptie_rig_calibrate(ptie_plane_calibration calibration[PTIE_ROLES],
                                                        const ptie_rig *rig, const char *recording,

@@ -89,13 +89,13 @@ static ptie_status check_files(const char *recording, const char *const plane[PT
 }
 
 ptie_status ptie_rig_check(const ptie_rig *rig, const char *recording, const char *const plane[PTIE_ROLES],
-                           ptie_rig_report *report) {
+                           const char *target, ptie_rig_report *report) {
     static const char where[] = "ptie_rig_check";
     ptie_rig own;
     PTIE_TRY(ptie_check_pointer(report, where, "report"));
     PTIE_TRY(check_files(recording, plane, where));
     PTIE_TRY(ptie_rig_take(&own, rig, where));
-    return ptie_rig_compare(&own, recording, plane, report);
+    return ptie_rig_compare(&own, recording, plane, target, report);
 }
 
 ptie_status ptie_rig_calibrate(ptie_plane_calibration calibration[PTIE_ROLES], const ptie_rig *rig,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Where planes lie and how bright they are, from frames without flow. */
 #include <math.h>
+#include <string.h>
 
 #include "prep/prep.h"
 #include "run/check.h"
@@ -32,7 +33,7 @@ static ptie_status measure_gains(ptie_plane_calibration *calibration, ptie_sampl
 static ptie_status measure(ptie_plane_calibration *calibration, ptie_sampling *s) {
     const ptie_prepare *plan = s->plan;
     PTIE_TRY(measure_gains(calibration, s));
-    PTIE_TRY(ptie_sampling_planes(s, s->image, PTIE_STEP_MIX));
+    PTIE_TRY(ptie_sampling_planes(s, s->image, PTIE_STEP_FLAT));
     for (int32_t i = 1; i < plan->planes; i++) {
         ptie_plane_calibration *c = &calibration[plan->role[i]];
         ptie_status status =
@@ -46,12 +47,11 @@ static ptie_status measure(ptie_plane_calibration *calibration, ptie_sampling *s
 ptie_status ptie_rig_measure(ptie_plane_calibration calibration[PTIE_ROLES], const ptie_rig *rig,
                              const char *recording, const char *const plane[PTIE_ROLES]) {
     ptie_sampling s;
-    ptie_rig blank = *rig;
     if (rig->one_plane)
         return PTIE_FAIL(PTIE_EINVAL, "rig: one plane has nothing to be calibrated against (expected a set of several)");
-    blank.reference[0] = 0;
     for (int i = 0; i < PTIE_ROLES; i++) calibration[i] = (ptie_plane_calibration){.gain = 1};
-    ptie_status status = ptie_sampling_open(&s, &blank, recording, plane);
+    const bool itself = recording && strcmp(recording, rig->reference) == 0; /* flat, there is nothing to see */
+    ptie_status status = ptie_sampling_open(&s, rig, recording, plane, !itself);
     if (status == PTIE_OK) status = measure(calibration, &s);
     ptie_sampling_close(&s);
     return status;

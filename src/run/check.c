@@ -17,8 +17,8 @@
 
 typedef struct check {
     const ptie_rig *rig;
-    ptie_sampling recording, reference; /* reference: opened if the rig has one */
-    bool has_reference;
+    ptie_sampling recording, reference, target; /* the last two: opened if there is one */
+    bool has_reference, has_target;
     ptie_rig_report *report;
 } check;
 
@@ -127,31 +127,42 @@ static double displacement(const ptie_similarity *s, double radius) {
     return hypot(s->shift_x_px, s->shift_y_px) + radius * (fabs(s->magnification - 1) + fabs(s->rotation_rad));
 }
 
-/* What registration leaves, in the light without flow if there is any. */
-static ptie_status check_registration(check *c) {
-    ptie_sampling *s = c->has_reference ? &c->reference : &c->recording;
+/* Of the plane that lies worst: pixels, and their standard deviation.  *unlike: a plane that shows nothing in common. */
+static ptie_status measure_displacement(double *worst, double *uncertain, const char **unlike, ptie_sampling *s) {
     const ptie_prepare *plan = s->plan;
-    double worst = 0, uncertain = 0;
-    if (plan->measured < 2) return PTIE_OK;
+    const double radius = hypot(plan->width, plan->height) / 2;
     PTIE_TRY(ptie_sampling_planes(s, s->image, PTIE_STEP_REGISTRATION));
     for (int32_t i = 1; i < plan->measured; i++) {
         ptie_registration found;
         ptie_status status =
             ptie_prep_register(&found, s->plane[0], s->plane[i], plan->light, plan->width, plan->height);
-        if (status == PTIE_ENUMERIC) {
-            add(c, "registration", PTIE_DOUBTFUL, (double)NAN, "cannot be measured: '%s' shows nothing that 'plus' does",
-                ptie_role_names[plan->role[i]]);
-            return PTIE_OK;
-        }
+        if (status == PTIE_ENUMERIC) *unlike = ptie_role_names[plan->role[i]];
+        if (status == PTIE_ENUMERIC) return PTIE_OK;
         PTIE_TRY(status);
-        const double radius = hypot(plan->width, plan->height) / 2, off = displacement(&found.place, radius);
-        if (off <= worst) continue;
-        worst = off;
-        uncertain = hypot(found.deviation.shift_x_px, found.deviation.shift_y_px) +
-                    radius * (found.deviation.magnification + found.deviation.rotation_rad);
+        if (displacement(&found.place, radius) <= *worst) continue;
+        *worst = displacement(&found.place, radius);
+        *uncertain = hypot(found.deviation.shift_x_px, found.deviation.shift_y_px) +
+                     radius * (found.deviation.magnification + found.deviation.rotation_rad);
     }
-    add(c, "registration", judge(worst - uncertain, 0.2, 2), worst,
-        "planes are off by %.2g px at the corners, +- %.2g px", worst, uncertain);
+    return PTIE_OK;
+}
+
+/* What registration leaves.  Only a target tells: in other frames dust on the sensor, the same in every plane, says that
+   the planes lie where they do not. */
+static ptie_status check_registration(check *c) {
+    double worst = 0, uncertain = 0;
+    const char *unlike = NULL;
+    if (c->recording.plan->measured < 2) return PTIE_OK;
+    if (!c->has_target) {
+        add(c, "registration", PTIE_DOUBTFUL, (double)NAN, "not measured: there is no recording of a target");
+        return PTIE_OK;
+    }
+    PTIE_TRY(measure_displacement(&worst, &uncertain, &unlike, &c->target));
+    if (unlike)
+        add(c, "registration", PTIE_DOUBTFUL, (double)NAN, "not measured: '%s' shows nothing that 'plus' does", unlike);
+    else
+        add(c, "registration", judge(worst - 2 * uncertain, 0.2, 2), worst,
+            "planes are off by %.2g px at the corners, +- %.2g px", worst, uncertain);
     return PTIE_OK;
 }
 
@@ -227,13 +238,15 @@ static ptie_status compare(check *c) {
 }
 
 ptie_status ptie_rig_compare(const ptie_rig *rig, const char *recording, const char *const plane[PTIE_ROLES],
-                             ptie_rig_report *report) {
-    check c = {.rig = rig, .report = report, .has_reference = rig->reference[0] != 0};
+                             const char *target, ptie_rig_report *report) {
+    check c = {.rig = rig, .report = report, .has_reference = rig->reference[0] != 0, .has_target = target != NULL};
     report->count = 0;
-    ptie_status status = ptie_sampling_open(&c.recording, rig, recording, plane);
-    if (status == PTIE_OK && c.has_reference) status = ptie_sampling_open(&c.reference, rig, rig->reference, NULL);
+    ptie_status status = ptie_sampling_open(&c.recording, rig, recording, plane, false);
+    if (status == PTIE_OK && c.has_reference) status = ptie_sampling_open(&c.reference, rig, rig->reference, NULL, false);
+    if (status == PTIE_OK && target) status = ptie_sampling_open(&c.target, rig, target, NULL, true);
     if (status == PTIE_OK) status = compare(&c);
     ptie_sampling_close(&c.recording);
     ptie_sampling_close(&c.reference);
+    ptie_sampling_close(&c.target);
     return status;
 }

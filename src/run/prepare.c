@@ -90,7 +90,7 @@ static void bring_to_grid(const ptie_prepare *p, const work *w) {
         if (p->resampler[i]) ptie_prep_resample(p->resampler[i], w->plane[i], w->plane[i], w->step);
 }
 
-/* Images to planes, up to a step; `raw`: neither flat fields nor equal means. */
+/* Images to planes, up to a step; `raw`: means are not matched. */
 static ptie_status compute(const ptie_prepare *p, const work *w, const float *const *images, ptie_step last,
                            bool raw) {
     subtract_dark(p, w, images);
@@ -99,7 +99,7 @@ static ptie_status compute(const ptie_prepare *p, const work *w, const float *co
     if (last < PTIE_STEP_MIX) return PTIE_OK;
     mix(p, w);
     if (p->reference) memcpy(w->plane[p->measured], p->reference, p->pixels * sizeof(float));
-    if (!raw && last >= PTIE_STEP_FLAT) flatten(p, w);
+    if (last >= PTIE_STEP_FLAT) flatten(p, w);
     if (last >= PTIE_STEP_GAIN) apply_gains(p, w);
     if (!raw && last >= PTIE_STEP_GAIN && p->rig.match_gain) PTIE_TRY(match_means(p, w));
     if (last >= PTIE_STEP_REGISTRATION) bring_to_grid(p, w);

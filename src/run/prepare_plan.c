@@ -212,9 +212,8 @@ static ptie_status read_stills(still *s) {
         PTIE_TRY(ptie_source_mean(p->dark, &s->shape, &p->rig, p->rig.dark));
     }
     if (p->last < PTIE_STEP_MIX) return PTIE_OK;
+    if (p->last >= PTIE_STEP_GAIN) PTIE_TRY(find_mask(s)); /* while there is no flat field */
     if (p->rig.reference[0]) PTIE_TRY(use_reference(s));
-    if (p->last < PTIE_STEP_GAIN) return PTIE_OK;
-    PTIE_TRY(find_mask(s));
     if (p->last < PTIE_STEP_MASK) return PTIE_OK;
     PTIE_TRY(bin_mask(&p->binned_light, p->light, p));
     return bin_mask(&p->binned_seen, p->seen, p);

@@ -30,7 +30,7 @@ struct ptie_prepare {
     uint8_t *binned_light, *binned_seen;   /* (shape.height, shape.width), or NULL */
 };
 
-/* The planes of images after a step, without flat field and before means are matched.  planes (out): p->measured of
+/* The planes of images after a step, their means not matched.  planes (out): p->measured of
    them. */
 ptie_status ptie_prepare_raw(const ptie_prepare *prepare, const float *const *images, float *const *planes,
                              ptie_step last, void *scratch);

@@ -12,6 +12,7 @@
 #include "io/recording.h"
 #include "metrics/metrics.h"
 #include "run/average.h"
+#include "run/background.h"
 #include "run/cutoff.h"
 #include "run/prepare.h"
 #include "run/reprojection.h"
@@ -172,6 +173,7 @@ static ptie_status make_plans(run *r) {
     const ptie_denoiser_params denoising = {.fast = p->fast, .all_threads = r->frames == 1};
     PTIE_TRY(ptie_frame_plan_create(&r->plan, r->engine, p->rig, ptie_prepare_mask(r->preparation), p->model,
                                     r->shape.width_px, r->shape.height_px, &denoising));
+    PTIE_TRY(ptie_background_measure(r->plan, r->source, r->preparation, p->rig));
     return ptie_reprojection_create(&r->reprojection, p->rig, ptie_prepare_mask(r->preparation),
                                     r->shape.width_px, r->shape.height_px, ptie_pool_threads(r->engine->pool));
 }

@@ -15,11 +15,12 @@ ptie_status ptie_sampling_read(ptie_sampling *s, int32_t i) {
 }
 
 ptie_status ptie_sampling_open(ptie_sampling *s, const ptie_rig *rig, const char *recording,
-                               const char *const plane[PTIE_ROLES]) {
+                               const char *const plane[PTIE_ROLES], bool flat) {
     ptie_run_params inputs = {.rig = rig, .recording = recording};
     if (plane) memcpy(inputs.plane, plane, sizeof inputs.plane);
     *s = (ptie_sampling){.rig = *rig};
-    s->rig.flat_field = s->rig.match_gain = false;
+    s->rig.flat_field = flat;
+    s->rig.match_gain = false;
     PTIE_TRY(ptie_source_open(&s->source, &inputs));
     s->shape = ptie_source_get_shape(s->source);
     s->frames = s->shape.frames < PTIE_SAMPLES ? (int32_t)s->shape.frames : PTIE_SAMPLES;

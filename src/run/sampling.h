@@ -8,7 +8,7 @@
 enum { PTIE_SAMPLES = 8 }; /* frames at most, spread over the recording */
 
 typedef struct ptie_sampling {
-    ptie_rig rig;               /* as given, but planes are left as they are */
+    ptie_rig rig;               /* as given, but means are not matched */
     ptie_source *source;
     ptie_source_shape shape;
     ptie_prepare *plan;
@@ -18,9 +18,10 @@ typedef struct ptie_sampling {
     unsigned char *scratch;
 } ptie_sampling;
 
-/* Opens the recording and reads the mean of its samples.  Free it also after a failure. */
+/* Opens the recording and reads the mean of its samples.  flat: planes are divided by their reference, if the rig
+   has one.  Free it also after a failure. */
 ptie_status ptie_sampling_open(ptie_sampling *s, const ptie_rig *rig, const char *recording,
-                               const char *const plane[PTIE_ROLES]);
+                               const char *const plane[PTIE_ROLES], bool flat);
 void ptie_sampling_close(ptie_sampling *s);
 
 /* Sample i, 0..frames-1, into s->frame. */

@@ -15,7 +15,10 @@ ptie_status ptie_frame_plan_create(ptie_frame_plan **out, const ptie_engine *eng
                                    int32_t width_px, int32_t height_px, const ptie_denoiser_params *params);
 void ptie_frame_plan_free(ptie_frame_plan *plan); /* NULL is fine */
 
-/* phase, denoised (out; denoised untouched without a model) from the planes in the order of ptie_rig_solver.
+/* A map that is taken off every phase from now on; the plan's. */
+void ptie_frame_plan_set_background(ptie_frame_plan *plan, float *background);
+
+/* phase, denoised (out; denoised untouched without a model, NULL: not wanted) from the planes in the order of ptie_rig_solver.
    `worker` picks the scratch. */
 ptie_status ptie_frame_solve(const ptie_frame_plan *plan, int32_t worker, float *phase, float *denoised,
                              const float *const *planes);
