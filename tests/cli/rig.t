@@ -51,7 +51,7 @@ A camera's recording is calibrated and checked
   shift_y * +- * px (glob)
   magnification * +- * (glob)
   rotation * +- * mrad (glob)
-  correlation    0.9* (glob)
+  correlation * (glob)
   
   ! cam.ini: written
   $ python3 -c 'print(abs(float([l.split()[2] for l in open("cam.ini") if l.startswith("shift_x")][0]) - 1) < 0.1)'
