@@ -15,6 +15,7 @@
 
 #define PATH_BYTES 4096
 #define WORDS_BYTES 200
+#define NOT_FOUND 127 /* exit status where posix_spawnp cannot tell before: POSIX */
 
 extern char **environ;
 
@@ -55,6 +56,12 @@ static int spawn(ptie_encoder *encoder, int input, char *const *arguments) {
     return error;
 }
 
+static ptie_status cannot_start(const ptie_encoder *encoder, int error) {
+    return PTIE_FAIL(error == ENOENT ? PTIE_EUNSUPPORTED : PTIE_EIO,
+                     "%s: cannot start ffmpeg: %s (expected it in PATH; .y4m does without)",
+                     encoder->path, strerror(error));
+}
+
 /* H.264 as every player and slide program shows it: 4:2:0 needs even sides, and the colours are those of Y4M. */
 static ptie_status start_ffmpeg(ptie_encoder *encoder, const char *part) {
     char output[PATH_BYTES];
@@ -73,9 +80,7 @@ static ptie_status start_ffmpeg(ptie_encoder *encoder, const char *part) {
     close(ends[1]);
     if (error == 0) return PTIE_OK;
     encoder->process = 0;
-    return PTIE_FAIL(error == ENOENT ? PTIE_EUNSUPPORTED : PTIE_EIO,
-                     "%s: cannot start ffmpeg: %s (expected it in PATH; .y4m does without)",
-                     encoder->path, strerror(error));
+    return cannot_start(encoder, error);
 }
 
 ptie_status ptie_encoder_start(ptie_encoder **out, const char *path, const char *part) {
@@ -114,6 +119,8 @@ static ptie_status wait_for(ptie_encoder *encoder) {
     while (ended < 0 && errno == EINTR);
     encoder->process = 0;
     if (ended > 0 && WIFEXITED(result) && WEXITSTATUS(result) == 0) return PTIE_OK;
+    if (ended > 0 && WIFEXITED(result) && WEXITSTATUS(result) == NOT_FOUND)
+        return cannot_start(encoder, ENOENT);
     return PTIE_FAIL(PTIE_EIO, "%s: ffmpeg failed: %s", encoder->path, complaint(encoder, words));
 }
 
