@@ -12,7 +12,8 @@ static void add_shape(facts *f, const ptie_recording_info *info) {
     add_text(f, "format", "%s", info->format);
     add_if(f, "data set", info->dataset);
     if (info->recorded > info->frames)
-        add_number(f, "frames", (double)info->frames, "%lld of %lld", (long long)info->frames, (long long)info->recorded);
+        add_number(f, "frames", (double)info->frames, "%lld of %lld", (long long)info->frames,
+                   (long long)info->recorded);
     else
         add_number(f, "frames", (double)info->frames, "%lld", (long long)info->frames);
     add_number(f, "width", info->width_px, "%d px", info->width_px);
@@ -37,11 +38,13 @@ static void add_times(facts *f, const ptie_recording_info *info) {
     char exposed[PTIE_QUANTITY_BYTES], kept[PTIE_QUANTITY_BYTES];
     const double rate_hz = info->frame_rate_hz;
     if (rate_hz > 0 && info->skip > 1)
-        add_number(f, "frame rate", rate_hz, "%s (one of %lld at %s)", rounded_quantity(kept, rate_hz, PTIE_RATE),
-                   (long long)info->skip, rounded_quantity(exposed, rate_hz * (double)info->skip, PTIE_RATE));
+        add_number(f, "frame rate", rate_hz, "%s (one of %lld at %s)",
+                   rounded_quantity(kept, rate_hz, PTIE_RATE), (long long)info->skip,
+                   rounded_quantity(exposed, rate_hz * (double)info->skip, PTIE_RATE));
     else if (rate_hz > 0)
         add_quantity(f, "frame rate", rate_hz, PTIE_RATE);
-    if (rate_hz > 0 && info->frames > 0) add_quantity(f, "duration", (double)info->frames / rate_hz, PTIE_TIME);
+    if (rate_hz > 0 && info->frames > 0)
+        add_quantity(f, "duration", (double)info->frames / rate_hz, PTIE_TIME);
     if (info->exposure_s > 0) add_quantity(f, "exposure", info->exposure_s, PTIE_TIME);
 }
 

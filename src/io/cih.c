@@ -97,8 +97,11 @@ static void take_value(void *user, const char *path, const char *value) {
 static ptie_status read_xml(ptie_cih *cih, char *data, size_t bytes, const char *path) {
     static const char first[] = "<cih>", last[] = "</cih>";
     char *begin = memmem(data, bytes, first, sizeof first - 1);
-    const char *end = begin ? memmem(begin, bytes - (size_t)(begin - data), last, sizeof last - 1) : NULL;
-    if (!end) return PTIE_FAIL(PTIE_EFORMAT, "%s: not a CIHX header, or cut (expected <cih> ... </cih>)", path);
+    const char *end =
+        begin ? memmem(begin, bytes - (size_t)(begin - data), last, sizeof last - 1) : NULL;
+    if (!end)
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: not a CIHX header, or cut (expected <cih> ... </cih>)",
+                         path);
     const size_t length = (size_t)(end - begin) + sizeof last - 1;
     ptie_clean_utf8(begin, length);
     return ptie_xml_read(begin, length, path, take_value, cih);

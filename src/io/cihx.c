@@ -30,17 +30,24 @@ static void add_files(ptie_text *xml, const ptie_recording_info *info) {
     ptie_text_append(xml, "<fileInfo>\r\n<version>1.0</version>\r\n");
     add_text(xml, "date", info->date, day);
     add_text(xml, "time", info->date[day] ? info->date + day + 1 : "", sizeof info->date);
-    ptie_text_append(xml, "</fileInfo>\r\n<imageFileInfo>\r\n<fileFormat>Mraw</fileFormat>\r\n</imageFileInfo>\r\n");
+    ptie_text_append(
+        xml,
+        "</fileInfo>\r\n<imageFileInfo>\r\n<fileFormat>Mraw</fileFormat>\r\n</imageFileInfo>\r\n");
 }
 
 static void add_images(ptie_text *xml, const ptie_recording_info *info, int color_bit) {
-    ptie_text_append(xml, "<imageDataInfo>\r\n<resolution>\r\n<width>%d</width>\r\n<height>%d</height>\r\n</resolution>\r\n",
-                     info->width_px, info->height_px);
-    ptie_text_append(xml, "<colorInfo>\r\n<type>Mono</type>\r\n<bit>%d</bit>\r\n</colorInfo>\r\n", color_bit);
-    ptie_text_append(xml, "<effectiveBit>\r\n<depth>%d</depth>\r\n<side>Lower</side>\r\n</effectiveBit>\r\n",
-                     info->bit_depth);
     ptie_text_append(xml,
-                     "<segmentPos>\r\n<sensorXpos>%d</sensorXpos>\r\n<sensorYpos>%d</sensorYpos>\r\n</segmentPos>\r\n"
+                     "<imageDataInfo>\r\n<resolution>\r\n<width>%d</width>\r\n<height>%d</"
+                     "height>\r\n</resolution>\r\n",
+                     info->width_px, info->height_px);
+    ptie_text_append(xml, "<colorInfo>\r\n<type>Mono</type>\r\n<bit>%d</bit>\r\n</colorInfo>\r\n",
+                     color_bit);
+    ptie_text_append(
+        xml, "<effectiveBit>\r\n<depth>%d</depth>\r\n<side>Lower</side>\r\n</effectiveBit>\r\n",
+        info->bit_depth);
+    ptie_text_append(xml,
+                     "<segmentPos>\r\n<sensorXpos>%d</sensorXpos>\r\n<sensorYpos>%d</"
+                     "sensorYpos>\r\n</segmentPos>\r\n"
                      "</imageDataInfo>\r\n",
                      info->roi_x_px, info->roi_y_px);
 }
@@ -48,16 +55,18 @@ static void add_images(ptie_text *xml, const ptie_recording_info *info, int colo
 /* `shutterSpeed` is the reciprocal of the exposure, whatever its name says. */
 static void add_recording(ptie_text *xml, const ptie_recording_info *info) {
     const long long frames = info->frames, skip = info->skip > 1 ? info->skip : 1;
-    ptie_text_append(xml,
-                     "<frameInfo>\r\n<recordedFrame>%lld</recordedFrame>\r\n<totalFrame>%lld</totalFrame>\r\n"
-                     "<startFrame>0</startFrame>\r\n<skipFrame>%lld</skipFrame>\r\n</frameInfo>\r\n",
-                     frames, frames, skip);
+    ptie_text_append(
+        xml,
+        "<frameInfo>\r\n<recordedFrame>%lld</recordedFrame>\r\n<totalFrame>%lld</totalFrame>\r\n"
+        "<startFrame>0</startFrame>\r\n<skipFrame>%lld</skipFrame>\r\n</frameInfo>\r\n",
+        frames, frames, skip);
     ptie_text_append(xml, "<basicInfo>\r\n");
     add_text(xml, "comment", info->comment, sizeof info->comment);
     ptie_text_append(xml, "</basicInfo>\r\n<recordInfo>\r\n<recordRate>%.15g</recordRate>\r\n",
                      info->frame_rate_hz * (double)skip);
     ptie_text_append(xml,
-                     "<shutterSpeed>%.9g</shutterSpeed>\r\n<shutterSpeedNsec>%.15g</shutterSpeedNsec>\r\n</recordInfo>\r\n",
+                     "<shutterSpeed>%.9g</shutterSpeed>\r\n<shutterSpeedNsec>%.15g</"
+                     "shutterSpeedNsec>\r\n</recordInfo>\r\n",
                      info->exposure_s > 0 ? 1 / info->exposure_s : 0, info->exposure_s * 1e9);
     ptie_text_append(xml, "<deviceInfo>\r\n");
     add_text(xml, "deviceName", info->camera, sizeof info->camera);

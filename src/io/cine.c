@@ -49,7 +49,8 @@ static double double_field(const setup *s, size_t offset) {
 }
 
 static void text_field(char *out, size_t capacity, const setup *s, size_t offset, size_t bytes) {
-    if (has(s, offset, bytes)) ptie_clean_copy(out, capacity, (const char *)s->bytes + offset, bytes);
+    if (has(s, offset, bytes))
+        ptie_clean_copy(out, capacity, (const char *)s->bytes + offset, bytes);
 }
 
 /* The first field is the oldest; later ones replace what had become too small. */
@@ -82,19 +83,22 @@ static ptie_status read_setup(ptie_cine *cine, FILE *stream, uint64_t at, uint64
                               const char *path) {
     setup *s;
     PTIE_TRY(ptie_alloc_status(&s, 1, sizeof *s, path));
-    const bool marked = read_at(stream, at, s->bytes, LENGTH_AT + 2) && memcmp(s->bytes + MARK_AT, "ST", 2) == 0;
+    const bool marked =
+        read_at(stream, at, s->bytes, LENGTH_AT + 2) && memcmp(s->bytes + MARK_AT, "ST", 2) == 0;
     const size_t length = marked ? (size_t)ptie_get_le(s->bytes + LENGTH_AT, 2) : 0;
     if (marked && length > LENGTH_AT && read_at(stream, at, s->bytes, length)) s->length = length;
     if (s->length > 0) take_setup(cine, s);
     *end = at + s->length;
     const bool found = s->length > 0;
     ptie_free(s);
-    return found ? PTIE_OK : PTIE_FAIL(PTIE_EFORMAT, "%s: damaged CINE: no SETUP block, or cut", path);
+    return found ? PTIE_OK
+                 : PTIE_FAIL(PTIE_EFORMAT, "%s: damaged CINE: no SETUP block, or cut", path);
 }
 
 /* --- time stamps ------------------------------------------------------------------------------ */
 
-/* Seconds after `origin_s`, from a fraction of 32 bits (its last two are flags) and Unix seconds. */
+/* Seconds after `origin_s`, from a fraction of 32 bits (its last two are flags) and Unix seconds.
+ */
 static double time_of(const unsigned char *stamp, uint64_t origin_s) {
     const double fraction = (double)(ptie_get_le(stamp, 4) & ~3ull) / 4294967296.0;
     return (double)((int64_t)ptie_get_le(stamp + 4, 4) - (int64_t)origin_s) + fraction;
@@ -138,7 +142,8 @@ ptie_status ptie_cine_read(ptie_cine *cine, FILE *stream, uint64_t file_bytes, c
     unsigned char head[FILE_HEADER_BYTES], image[IMAGE_HEADER_BYTES];
     uint64_t setup_end;
     *cine = (ptie_cine){0};
-    if (!read_at(stream, 0, head, sizeof head) || !read_at(stream, ptie_get_le(head + 24, 4), image, sizeof image))
+    if (!read_at(stream, 0, head, sizeof head) ||
+        !read_at(stream, ptie_get_le(head + 24, 4), image, sizeof image))
         return PTIE_FAIL(PTIE_EFORMAT, "%s: damaged CINE: headers are cut short", path);
     cine->compression = (int)ptie_get_le(head + 4, 2);
     cine->first_image = signed_32(head + 16);
@@ -149,8 +154,8 @@ ptie_status ptie_cine_read(ptie_cine *cine, FILE *stream, uint64_t file_bytes, c
     PTIE_TRY(read_setup(cine, stream, ptie_get_le(head + 28, 4), &setup_end, path));
     if (cine->images < 1 || cine->offsets_at > file_bytes ||
         (uint64_t)cine->images > (file_bytes - cine->offsets_at) / 8)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: damaged CINE: no room for the offsets of %lld images", path,
-                         (long long)cine->images);
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: damaged CINE: no room for the offsets of %lld images",
+                         path, (long long)cine->images);
     find_stamps(cine, stream, setup_end);
     return PTIE_OK;
 }

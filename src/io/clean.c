@@ -7,7 +7,11 @@
 /* Bytes of the UTF-8 character that begins here, 0 if none does (RFC 3629). */
 static size_t character_bytes(const unsigned char *text, size_t bytes) {
     const unsigned char first = text[0];
-    const size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+    const size_t length = first < 0x80   ? 1
+                          : first < 0xc2 ? 0
+                          : first < 0xe0 ? 2
+                          : first < 0xf0 ? 3
+                                         : 4;
     if (length == 0 || length > bytes || first > 0xf4) return 0;
     for (size_t i = 1; i < length; i++)
         if ((text[i] & 0xc0) != 0x80) return 0;

@@ -8,8 +8,8 @@
 /* Every byte that belongs to no UTF-8 character becomes '?'. */
 void ptie_clean_utf8(char *text, size_t bytes);
 
-/* Copies at most `length` bytes, up to a NUL: without spaces at the ends, on one line, in UTF-8, cut
-   between characters where `out` is too small. */
+/* Copies at most `length` bytes, up to a NUL: without spaces at the ends, on one line, in UTF-8,
+   cut between characters where `out` is too small. */
 void ptie_clean_copy(char *out, size_t capacity, const char *text, size_t length);
 
 #endif

@@ -63,7 +63,8 @@ static bool skip_to(ptie_mat_source *source, uint64_t at) {
     }
     while (source->at < at) {
         const uint64_t left = at - source->at;
-        if (!inflate_next(source, block, left < sizeof block ? (size_t)left : sizeof block)) return false;
+        if (!inflate_next(source, block, left < sizeof block ? (size_t)left : sizeof block))
+            return false;
     }
     return true;
 }

@@ -13,8 +13,8 @@ typedef struct ptie_mat_source {
     const char *path;    /* the caller's */
     uint64_t start, end; /* of the element in the file */
     bool deflated;
-    uint64_t at;         /* next byte, as inflated */
-    uint64_t taken;      /* of the deflated bytes */
+    uint64_t at;    /* next byte, as inflated */
+    uint64_t taken; /* of the deflated bytes */
     z_stream z;
     unsigned char input[16384];
 } ptie_mat_source;
@@ -24,8 +24,8 @@ ptie_status ptie_mat_source_open(ptie_mat_source *source, FILE *stream, const ch
                                  uint64_t start, uint64_t bytes, bool deflated);
 void ptie_mat_source_close(ptie_mat_source *source); /* fine on a zeroed one */
 
-/* `count` bytes from position `at` on; going back in a deflated element starts it again.  PTIE_EFORMAT when the
-   element ends before. */
+/* `count` bytes from position `at` on; going back in a deflated element starts it again.
+   PTIE_EFORMAT when the element ends before. */
 ptie_status ptie_mat_source_read(ptie_mat_source *source, uint64_t at, void *bytes, size_t count);
 
 #endif

@@ -31,8 +31,8 @@ static void cine_close(void *state) {
     ptie_free(file);
 }
 
-/* Ten bits hold twelve through the inverse of the transfer function of ITU-R BT.709, black at 64 and white at
-   1014 -> 4064.  Within 2 counts of the camera maker's table. */
+/* Ten bits hold twelve through the inverse of the transfer function of ITU-R BT.709, black at 64
+   and white at 1014 -> 4064.  Within 2 counts of the camera maker's table. */
 static float linear_count(int code) {
     if (code > LAST_CODE) return CLIPPED;
     const double x = (double)(code - FIRST_CODE) / (LAST_CODE - FIRST_CODE);
@@ -50,46 +50,53 @@ static ptie_status take_packing(cine_recording *file, ptie_recording_info *info)
     const ptie_cine *cine = &file->cine;
     const bool plain = cine->packing == PTIE_CINE_PLAIN;
     if (cine->compression != 0 && cine->compression != 2)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: compressed images (expected compression 0 or 2, found %d)",
+        return PTIE_FAIL(PTIE_EUNSUPPORTED,
+                         "%s: compressed images (expected compression 0 or 2, found %d)",
                          file->path, cine->compression);
     if (!plain && cine->packing != PTIE_CINE_PACKED_10 && cine->packing != PTIE_CINE_PACKED_12)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: packing of pixels (expected 0, 256 or 1024, found %d)",
-                         file->path, cine->packing);
+        return PTIE_FAIL(PTIE_EUNSUPPORTED,
+                         "%s: packing of pixels (expected 0, 256 or 1024, found %d)", file->path,
+                         cine->packing);
     if (plain && cine->bits_per_pixel != 8 && cine->bits_per_pixel != 16)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: bits of a pixel (expected 8 or 16, found %d)", file->path,
-                         cine->bits_per_pixel);
+        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: bits of a pixel (expected 8 or 16, found %d)",
+                         file->path, cine->bits_per_pixel);
     file->raster.packed_bits = plain ? 0 : cine->packing == PTIE_CINE_PACKED_10 ? 10 : 12;
     file->raster.sample = (ptie_sample){'u', cine->bits_per_pixel == 8 ? 1 : 2};
     file->raster.swapped = !ptie_machine_is_little();
     /* Plain images are stored bottom-up, packed ones top-down; the flag turns either. */
     file->raster.bottom_up = info->bottom_up = plain != cine->flip_vertical;
-    snprintf(info->sample, sizeof info->sample, "u%d%s", plain ? cine->bits_per_pixel : file->raster.packed_bits,
-             plain ? "" : " packed");
+    snprintf(info->sample, sizeof info->sample, "u%d%s",
+             plain ? cine->bits_per_pixel : file->raster.packed_bits, plain ? "" : " packed");
     return PTIE_OK;
 }
 
-/* Where the pixels of a frame begin, if all of them are in the file: behind an annotation that says its size
-   first and theirs last. */
+/* Where the pixels of a frame begin, if all of them are in the file: behind an annotation that says
+   its size first and theirs last. */
 static bool find_frame(const cine_recording *file, int64_t frame, uint64_t *pixels) {
     unsigned char number[8];
     const uint64_t entry = file->cine.offsets_at + 8 * (uint64_t)frame;
     const uint64_t frame_bytes = ptie_raster_bytes(&file->raster);
-    if (fseeko(file->stream, (off_t)entry, SEEK_SET) != 0 || fread(number, 1, 8, file->stream) != 8) return false;
+    if (fseeko(file->stream, (off_t)entry, SEEK_SET) != 0 || fread(number, 1, 8, file->stream) != 8)
+        return false;
     const uint64_t at = ptie_get_le(number, 8);
     if (at > file->file_bytes || fseeko(file->stream, (off_t)at, SEEK_SET) != 0) return false;
     if (fread(number, 1, 4, file->stream) != 4) return false;
     const uint64_t annotation = ptie_get_le(number, 4);
     *pixels = at + annotation;
-    if (annotation < 8 || *pixels > file->file_bytes || frame_bytes > file->file_bytes - *pixels) return false;
-    if (fseeko(file->stream, (off_t)(*pixels - 4), SEEK_SET) != 0 || fread(number, 1, 4, file->stream) != 4)
+    if (annotation < 8 || *pixels > file->file_bytes || frame_bytes > file->file_bytes - *pixels)
+        return false;
+    if (fseeko(file->stream, (off_t)(*pixels - 4), SEEK_SET) != 0 ||
+        fread(number, 1, 4, file->stream) != 4)
         return false;
     return ptie_get_le(number, 4) >= frame_bytes;
 }
 
-/* How many frames from the first on are whole: where a file was cut, all from there on are missing. */
+/* How many frames from the first on are whole: where a file was cut, all from there on are missing.
+ */
 static ptie_status count_frames(const cine_recording *file, ptie_recording_info *info) {
     uint64_t pixels;
-    int64_t whole = 0, missing = file->cine.images; /* frame `whole` - 1 is there, frame `missing` is not */
+    int64_t whole = 0,
+            missing = file->cine.images; /* frame `whole` - 1 is there, frame `missing` is not */
     if (find_frame(file, missing - 1, &pixels)) whole = missing;
     while (missing - whole > 1) {
         const int64_t middle = (whole + missing) / 2;
@@ -99,8 +106,8 @@ static ptie_status count_frames(const cine_recording *file, ptie_recording_info 
             missing = middle;
     }
     if (whole == 0)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: no frame of %d x %d px in the file", file->path, info->width_px,
-                         info->height_px);
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: no frame of %d x %d px in the file", file->path,
+                         info->width_px, info->height_px);
     ptie_info_set_frames(info, whole, file->cine.images);
     return PTIE_OK;
 }
@@ -120,13 +127,15 @@ static void take_camera(ptie_recording_info *info, const ptie_cine *cine) {
     else if (cine->camera_version > 0)
         snprintf(model, sizeof model, "Phantom version %lld", (long long)cine->camera_version);
     if (cine->serial > 0)
-        snprintf(info->camera, sizeof info->camera, "%.40s, serial %u", model, (unsigned)cine->serial);
+        snprintf(info->camera, sizeof info->camera, "%.40s, serial %u", model,
+                 (unsigned)cine->serial);
     else
         memcpy(info->camera, model, sizeof info->camera);
 }
 
 static double level(const cine_recording *file, int64_t stored) {
-    return file->linear && stored >= 0 && stored < CODES ? (double)file->linear[stored] : (double)stored;
+    return file->linear && stored >= 0 && stored < CODES ? (double)file->linear[stored]
+                                                         : (double)stored;
 }
 
 static void take_levels(const cine_recording *file, ptie_recording_info *info) {
@@ -145,18 +154,23 @@ static void take_facts(const cine_recording *file, ptie_recording_info *info) {
     take_camera(info, cine);
     take_date(info, cine->trigger_s);
     take_levels(file, info);
-    snprintf(info->comment, sizeof info->comment, "%.*s", (int)sizeof info->comment - 1, cine->description);
+    snprintf(info->comment, sizeof info->comment, "%.*s", (int)sizeof info->comment - 1,
+             cine->description);
     if (cine->first_image <= 0)
-        snprintf(info->trigger, sizeof info->trigger, "at frame %lld", (long long)-cine->first_image);
+        snprintf(info->trigger, sizeof info->trigger, "at frame %lld",
+                 (long long)-cine->first_image);
     else
-        snprintf(info->trigger, sizeof info->trigger, "%lld frames before the first", (long long)cine->first_image);
+        snprintf(info->trigger, sizeof info->trigger, "%lld frames before the first",
+                 (long long)cine->first_image);
     info->exposure_s = cine->exposure_s;
     info->frame_rate_hz = rate_hz;
     info->skip = 1;
-    if (rate_hz > 0 && cine->nominal_rate_hz / rate_hz > 1.5 && cine->nominal_rate_hz / rate_hz < 1e9)
+    if (rate_hz > 0 && cine->nominal_rate_hz / rate_hz > 1.5 &&
+        cine->nominal_rate_hz / rate_hz < 1e9)
         info->skip = llround(cine->nominal_rate_hz / rate_hz);
     /* A whole number of pixels per metre: what it stands for is a whole number of 10 nm. */
-    if (cine->pixels_per_metre > 0) info->pixel_m = round(1e8 / (double)cine->pixels_per_metre) / 1e8;
+    if (cine->pixels_per_metre > 0)
+        info->pixel_m = round(1e8 / (double)cine->pixels_per_metre) / 1e8;
 }
 
 /* inside: "", or "/codes" for 10-bit codes as stored. */
@@ -167,14 +181,16 @@ static ptie_status cine_load(cine_recording *file, ptie_recording_info *info, co
     PTIE_TRY(ptie_input_open(&file->stream, path, &file->file_bytes));
     PTIE_TRY(ptie_cine_read(&file->cine, file->stream, file->file_bytes, path));
     PTIE_TRY(take_packing(file, info));
-    PTIE_TRY(ptie_info_set_size(info, path, (uint64_t)file->cine.width, (uint64_t)file->cine.height));
+    PTIE_TRY(
+        ptie_info_set_size(info, path, (uint64_t)file->cine.width, (uint64_t)file->cine.height));
     file->raster.width = info->width_px;
     file->raster.height = info->height_px;
     PTIE_TRY(ptie_check_fits(path, ptie_raster_bytes(&file->raster), file->file_bytes, 1));
     PTIE_TRY(count_frames(file, info));
     const bool codes = strcmp(inside, "/codes") == 0;
     if (*inside && !codes)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: no such data set (expected :/codes, found ':%s')", path, inside);
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: no such data set (expected :/codes, found ':%s')", path,
+                         inside);
     if (file->raster.packed_bits == 10 && !codes) PTIE_TRY(make_linear(file));
     take_facts(file, info);
     return PTIE_OK;
@@ -198,7 +214,8 @@ static ptie_status cine_read(void *state, int64_t frame, float *data) {
     const size_t count = (size_t)file->raster.width * (size_t)file->raster.height;
     uint64_t at;
     if (!find_frame(file, frame, &at))
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: frame %lld lies outside the file", file->path, (long long)frame);
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: frame %lld lies outside the file", file->path,
+                         (long long)frame);
     PTIE_TRY(ptie_raster_read(&file->raster, file->stream, at, data, file->path, frame));
     if (file->linear)
         for (size_t i = 0; i < count; i++) data[i] = file->linear[(int32_t)data[i]];

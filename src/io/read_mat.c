@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* MATLAB's level 5 MAT files (v5, v6, and v7 with its deflated variables): a numeric array [H, W] or [H, W, T].
- * Not by libmatio: it inflates a variable from its beginning for every part that is asked for. */
+/* MATLAB's level 5 MAT files (v5, v6, and v7 with its deflated variables): a numeric array [H, W]
+ * or [H, W, T]. Not by libmatio: it inflates a variable from its beginning for every part that is
+ * asked for. */
 #include <string.h>
 
 #include "base/memory.h"
@@ -12,7 +13,14 @@
 #include "io/sample.h"
 #include "io/transpose.h"
 
-enum { HEADER_BYTES = 128, BLOCK = 4096, MATRIX = 14, COMPRESSED = 15, MOST_DIMS = 8, NAME_BYTES = 64 };
+enum {
+    HEADER_BYTES = 128,
+    BLOCK = 4096,
+    MATRIX = 14,
+    COMPRESSED = 15,
+    MOST_DIMS = 8,
+    NAME_BYTES = 64
+};
 enum { CLASS_DOUBLE = 6, CLASS_UINT64 = 15, COMPLEX = 0x0800 };
 #define DENSEST 1032 /* bytes that one deflated byte can stand for */
 
@@ -76,8 +84,9 @@ static ptie_status read_element(mat *file, uint64_t at, element *out) {
 }
 
 static ptie_sample sample_of(uint32_t type) {
-    static const ptie_sample samples[] = {[1] = {'i', 1}, [2] = {'u', 1}, [3] = {'i', 2},  [4] = {'u', 2}, [5] = {'i', 4},
-                                          [6] = {'u', 4}, [7] = {'f', 4}, [9] = {'f', 8}, [12] = {'i', 8}, [13] = {'u', 8}};
+    static const ptie_sample samples[] = {
+        [1] = {'i', 1}, [2] = {'u', 1}, [3] = {'i', 2}, [4] = {'u', 2},  [5] = {'i', 4},
+        [6] = {'u', 4}, [7] = {'f', 4}, [9] = {'f', 8}, [12] = {'i', 8}, [13] = {'u', 8}};
     return type < sizeof samples / sizeof *samples ? samples[type] : (ptie_sample){0};
 }
 
@@ -102,7 +111,8 @@ static ptie_status read_name(mat *file, const element *name, variable *v) {
     return ptie_mat_source_read(&file->source, name->data, v->name, length);
 }
 
-/* The header of the matrix that the source begins with: flags, dimensions, name, and where its numbers are. */
+/* The header of the matrix that the source begins with: flags, dimensions, name, and where its
+ * numbers are. */
 static ptie_status read_variable(mat *file, variable *v) {
     unsigned char flags[4];
     element matrix, part, dims;
@@ -132,21 +142,24 @@ static ptie_status read_variable(mat *file, variable *v) {
 static ptie_status open_element(mat *file, uint64_t at, uint64_t *next) {
     unsigned char tag[8];
     ptie_mat_source_close(&file->source);
-    PTIE_TRY(ptie_mat_source_open(&file->source, file->stream, file->path, at, file->file_bytes - at, false));
+    PTIE_TRY(ptie_mat_source_open(&file->source, file->stream, file->path, at,
+                                  file->file_bytes - at, false));
     PTIE_TRY(ptie_mat_source_read(&file->source, 0, tag, sizeof tag));
     const element e = parse_tag(file, tag, 0);
     if (e.bytes > file->file_bytes - at - e.data)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: file is cut short (a variable needs %u bytes at %llu)", file->path,
-                         e.bytes, (unsigned long long)at);
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: file is cut short (a variable needs %u bytes at %llu)",
+                         file->path, e.bytes, (unsigned long long)at);
     const bool deflated = e.type == COMPRESSED;
     const uint64_t start = deflated ? at + e.data : at, end = at + e.data + e.bytes;
     *next = deflated ? end : at + e.next;
-    return ptie_mat_source_open(&file->source, file->stream, file->path, start, end - start, deflated);
+    return ptie_mat_source_open(&file->source, file->stream, file->path, start, end - start,
+                                deflated);
 }
 
-/* Looks for `name`, or without one for the images: matrices that are no vectors.  Leaves the last found in `chosen`,
-   its element in *found, and their names in `names`. */
-static ptie_status search(mat *file, const char *name, uint64_t *found, size_t *count, ptie_text *names) {
+/* Looks for `name`, or without one for the images: matrices that are no vectors.  Leaves the last
+   found in `chosen`, its element in *found, and their names in `names`. */
+static ptie_status search(mat *file, const char *name, uint64_t *found, size_t *count,
+                          ptie_text *names) {
     uint64_t next;
     for (uint64_t at = HEADER_BYTES; at + 8 <= file->file_bytes; at = next) {
         variable v;
@@ -168,10 +181,11 @@ static ptie_status choose_variable(mat *file, const char *name, uint64_t *found)
     ptie_status status = search(file, name, found, &count, &names);
     if (status == PTIE_OK && count == 0)
         status = *name ? PTIE_FAIL(PTIE_EFORMAT, "%s: no variable '%s'", file->path, name)
-                       : PTIE_FAIL(PTIE_EFORMAT, "%s: no numeric array of 2 or 3 dimensions", file->path);
+                       : PTIE_FAIL(PTIE_EFORMAT, "%s: no numeric array of 2 or 3 dimensions",
+                                   file->path);
     else if (status == PTIE_OK && count > 1)
-        status = PTIE_FAIL(PTIE_EFORMAT, "%s: several variables (expected %s:/NAME, found %s)", file->path, file->path,
-                           names.data);
+        status = PTIE_FAIL(PTIE_EFORMAT, "%s: several variables (expected %s:/NAME, found %s)",
+                           file->path, file->path, names.data);
     ptie_text_free(&names);
     return status;
 }
@@ -181,23 +195,28 @@ static ptie_status choose_variable(mat *file, const char *name, uint64_t *found)
 static ptie_status take_shape(mat *file, ptie_recording_info *info) {
     const variable *v = &file->chosen;
     if (!v->numeric)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: /%s is no array of real numbers with 2 or 3 dimensions", file->path,
+        return PTIE_FAIL(PTIE_EUNSUPPORTED,
+                         "%s: /%s is no array of real numbers with 2 or 3 dimensions", file->path,
                          v->name);
     PTIE_TRY(ptie_info_set_size(info, file->path, v->width, v->height));
     if (v->frames < 1) return PTIE_FAIL(PTIE_EFORMAT, "%s: /%s has no frames", file->path, v->name);
     const uint64_t frame_bytes = v->width * v->height * v->sample.bytes;
     if (v->frames > v->data_bytes / frame_bytes)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: /%s is cut short (expected %llu frames of %llu bytes, found %llu bytes)",
-                         file->path, v->name, (unsigned long long)v->frames, (unsigned long long)frame_bytes,
-                         (unsigned long long)v->data_bytes);
-    PTIE_TRY(ptie_check_fits(file->path, v->data_bytes, file->file_bytes, file->source.deflated ? DENSEST : 1));
+        return PTIE_FAIL(
+            PTIE_EFORMAT,
+            "%s: /%s is cut short (expected %llu frames of %llu bytes, found %llu bytes)",
+            file->path, v->name, (unsigned long long)v->frames, (unsigned long long)frame_bytes,
+            (unsigned long long)v->data_bytes);
+    PTIE_TRY(ptie_check_fits(file->path, v->data_bytes, file->file_bytes,
+                             file->source.deflated ? DENSEST : 1));
     info->frames = (int64_t)v->frames;
     ptie_sample_name(info->sample, v->sample);
     snprintf(info->dataset, sizeof info->dataset, "/%s", v->name);
     return PTIE_OK;
 }
 
-static ptie_status mat_load(mat *file, ptie_recording_info *info, const char *path, const char *inside) {
+static ptie_status mat_load(mat *file, ptie_recording_info *info, const char *path,
+                            const char *inside) {
     unsigned char head[HEADER_BYTES];
     uint64_t at = 0, next;
     file->path = ptie_strdup(path);
@@ -208,10 +227,12 @@ static ptie_status mat_load(mat *file, ptie_recording_info *info, const char *pa
     PTIE_TRY(choose_variable(file, *inside ? inside + 1 : inside, &at));
     PTIE_TRY(open_element(file, at, &next));
     PTIE_TRY(take_shape(file, info));
-    return ptie_alloc_status(&file->columns, file->chosen.width * file->chosen.height, sizeof *file->columns, path);
+    return ptie_alloc_status(&file->columns, file->chosen.width * file->chosen.height,
+                             sizeof *file->columns, path);
 }
 
-static ptie_status mat_open(void **state, ptie_recording_info *info, const char *path, const char *inside) {
+static ptie_status mat_open(void **state, ptie_recording_info *info, const char *path,
+                            const char *inside) {
     mat *file;
     PTIE_TRY(ptie_alloc_status(&file, 1, sizeof *file, path));
     const ptie_status status = mat_load(file, info, path, inside);

@@ -47,7 +47,8 @@ static ptie_status find_beside(char out[PATH_MAX], const char *path, const char 
         const int length = snprintf(out, PATH_MAX, "%.*s%s", stem, path, *endings);
         if (length > 0 && length < PATH_MAX && access(out, F_OK) == 0) return PTIE_OK;
     }
-    return PTIE_FAIL(PTIE_EIO, "%s: the recording's other file is missing (expected %s beside it)", path, what);
+    return PTIE_FAIL(PTIE_EIO, "%s: the recording's other file is missing (expected %s beside it)",
+                     path, what);
 }
 
 static ptie_status find_files(mraw *file, const char *path) {
@@ -65,12 +66,15 @@ static ptie_status find_files(mraw *file, const char *path) {
 static ptie_status take_packing(mraw *file, ptie_recording_info *info, const ptie_cih *cih) {
     const int64_t bits = cih->color_bit;
     if (*cih->format && strcasecmp(cih->format, "MRaw") != 0)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: frames are saved in another format (expected MRaw, found %s)",
+        return PTIE_FAIL(PTIE_EUNSUPPORTED,
+                         "%s: frames are saved in another format (expected MRaw, found %s)",
                          file->header, cih->format);
     if (strcasecmp(cih->color, "Color") == 0)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: colour recording (expected Mono or Raw)", file->header);
+        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: colour recording (expected Mono or Raw)",
+                         file->header);
     if (bits != 8 && bits != 10 && bits != 12 && bits != 16)
-        return PTIE_FAIL(PTIE_EUNSUPPORTED, "%s: bits of a sample (expected 8, 10, 12 or 16, found %lld)",
+        return PTIE_FAIL(PTIE_EUNSUPPORTED,
+                         "%s: bits of a sample (expected 8, 10, 12 or 16, found %lld)",
                          file->header, (long long)bits);
     file->raster.packed_bits = bits == 10 || bits == 12 ? (int)bits : 0;
     file->raster.sample = (ptie_sample){'u', bits == 8 ? 1 : 2};
@@ -83,8 +87,8 @@ static ptie_status take_packing(mraw *file, ptie_recording_info *info, const pti
     return PTIE_OK;
 }
 
-/* Some programs pad the rows of 12-bit frames.  Where that makes a difference, the size of the whole file
-   decides. */
+/* Some programs pad the rows of 12-bit frames.  Where that makes a difference, the size of the
+   whole file decides. */
 static ptie_status choose_rows(mraw *file, uint64_t frames) {
     ptie_raster padded = file->raster;
     const uint64_t plain = ptie_raster_bytes(&file->raster);
@@ -98,11 +102,12 @@ static ptie_status choose_rows(mraw *file, uint64_t frames) {
         file->frame_bytes = ptie_raster_bytes(&padded);
         return PTIE_OK;
     }
-    return PTIE_FAIL(PTIE_EFORMAT,
-                     "%s: size fits neither plain nor padded 12-bit rows (expected %llu frames of %llu or %llu "
-                     "bytes, found %llu bytes)",
-                     file->path, (unsigned long long)frames, (unsigned long long)plain,
-                     (unsigned long long)ptie_raster_bytes(&padded), (unsigned long long)file->file_bytes);
+    return PTIE_FAIL(
+        PTIE_EFORMAT,
+        "%s: size fits neither plain nor padded 12-bit rows (expected %llu frames of %llu or %llu "
+        "bytes, found %llu bytes)",
+        file->path, (unsigned long long)frames, (unsigned long long)plain,
+        (unsigned long long)ptie_raster_bytes(&padded), (unsigned long long)file->file_bytes);
 }
 
 static ptie_status count_frames(mraw *file, ptie_recording_info *info, const ptie_cih *cih) {
@@ -116,7 +121,8 @@ static ptie_status count_frames(mraw *file, ptie_recording_info *info, const pti
     return PTIE_OK;
 }
 
-/* In s; the exact one in ns where there is one, else the nominal "1/N" (of which a CIHX has the N). */
+/* In s; the exact one in ns where there is one, else the nominal "1/N" (of which a CIHX has the N).
+ */
 static double exposure_of(const ptie_cih *cih) {
     const char *slash = strchr(cih->shutter, '/');
     double number;
@@ -129,9 +135,11 @@ static void take_facts(ptie_recording_info *info, const ptie_cih *cih) {
     const bool numbered = *cih->trigger >= '0' && *cih->trigger <= '9';
     memcpy(info->camera, cih->camera, sizeof info->camera);
     memcpy(info->comment, cih->comment, sizeof info->comment);
-    snprintf(info->date, sizeof info->date, "%.15s%s%.15s", cih->date, *cih->time ? " " : "", cih->time);
+    snprintf(info->date, sizeof info->date, "%.15s%s%.15s", cih->date, *cih->time ? " " : "",
+             cih->time);
     if (*cih->trigger)
-        snprintf(info->trigger, sizeof info->trigger, "%s%s", numbered ? "mode " : "", cih->trigger);
+        snprintf(info->trigger, sizeof info->trigger, "%s%s", numbered ? "mode " : "",
+                 cih->trigger);
     info->exposure_s = exposure_of(cih);
     info->skip = cih->skip > 1 ? cih->skip : 1;
     info->frame_rate_hz = cih->rate_hz > 0 ? cih->rate_hz / (double)info->skip : 0;
@@ -168,7 +176,8 @@ static ptie_status mraw_describe(ptie_recording_info *info, const char *path) {
     ptie_free(file);
     PTIE_TRY(status);
     info->recorded = cih.frames;
-    snprintf(info->warning, sizeof info->warning, "this is the header alone: the frames (.mraw) are not beside it");
+    snprintf(info->warning, sizeof info->warning,
+             "this is the header alone: the frames (.mraw) are not beside it");
     return PTIE_OK;
 }
 
@@ -196,10 +205,9 @@ static ptie_status mraw_read(void *state, int64_t frame, float *data) {
     return PTIE_OK;
 }
 
-const ptie_reader ptie_read_mraw = {
-    .name = "MRAW",
-    .claims = mraw_claims,
-    .open = mraw_open,
-    .describe = mraw_describe,
-    .read = mraw_read,
-    .close = mraw_close};
+const ptie_reader ptie_read_mraw = {.name = "MRAW",
+                                    .claims = mraw_claims,
+                                    .open = mraw_open,
+                                    .describe = mraw_describe,
+                                    .read = mraw_read,
+                                    .close = mraw_close};

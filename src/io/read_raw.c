@@ -50,26 +50,29 @@ static ptie_status refuse(const raw *file, const char *key, const char *expected
 }
 
 /* A whole number low .. high; stays as it is where the key is missing. */
-static ptie_status take_integer(const raw *file, const json_t *object, const char *key, int64_t low, int64_t high,
-                                int64_t *value) {
+static ptie_status take_integer(const raw *file, const json_t *object, const char *key, int64_t low,
+                                int64_t high, int64_t *value) {
     char expected[80];
     const json_t *found = json_object_get(object, key);
     if (!found) return PTIE_OK;
     *value = json_integer_value(found);
     if (json_is_integer(found) && *value >= low && *value <= high) return PTIE_OK;
-    snprintf(expected, sizeof expected, "a whole number of %lld .. %lld", (long long)low, (long long)high);
+    snprintf(expected, sizeof expected, "a whole number of %lld .. %lld", (long long)low,
+             (long long)high);
     return refuse(file, key, expected);
 }
 
 /* "25 kHz" */
-static ptie_status take_quantity(const raw *file, const json_t *object, const char *key, ptie_quantity quantity,
-                                 double *value) {
+static ptie_status take_quantity(const raw *file, const json_t *object, const char *key,
+                                 ptie_quantity quantity, double *value) {
     const json_t *found = json_object_get(object, key);
     if (!found) return PTIE_OK;
     const char *text = json_string_value(found);
-    const char *expected = text ? ptie_parse_quantity(text, quantity, value)
-                                : "text with a number and its unit";
-    return !expected && *value >= 0 && isfinite(*value) ? PTIE_OK : refuse(file, key, expected ? expected : "no negative value");
+    const char *expected =
+        text ? ptie_parse_quantity(text, quantity, value) : "text with a number and its unit";
+    return !expected && *value >= 0 && isfinite(*value)
+               ? PTIE_OK
+               : refuse(file, key, expected ? expected : "no negative value");
 }
 
 static void take_text(const json_t *object, const char *key, char *out, size_t bytes) {
@@ -79,7 +82,8 @@ static void take_text(const json_t *object, const char *key, char *out, size_t b
 
 /* "u16": little-endian; "u16be"; "u10", "u12": packed. */
 static ptie_status take_sample(raw *file, ptie_recording_info *info, const json_t *object) {
-    static const char known[] = "u8 i8 u16 i16 u32 i32 u64 i64 f32 f64, with be for big-endian, or u10 u12 packed";
+    static const char known[] =
+        "u8 i8 u16 i16 u32 i32 u64 i64 f32 f64, with be for big-endian, or u10 u12 packed";
     const char *text = json_string_value(json_object_get(object, "sample"));
     int64_t bits;
     char digits[4] = "";
@@ -94,7 +98,8 @@ static ptie_status take_sample(raw *file, ptie_recording_info *info, const json_
     file->raster.sample = (ptie_sample){text[0], packed ? 2 : bits % 8 == 0 ? (size_t)bits / 8 : 0};
     if (!ptie_sample_known(file->raster.sample)) return refuse(file, "sample", known);
     file->raster.swapped = bits > 8 && big == ptie_machine_is_little();
-    snprintf(info->sample, sizeof info->sample, "%c%d%s", text[0], (int)bits, packed ? " packed" : "");
+    snprintf(info->sample, sizeof info->sample, "%c%d%s", text[0], (int)bits,
+             packed ? " packed" : "");
     return PTIE_OK;
 }
 
@@ -134,16 +139,17 @@ static ptie_status take_facts(const raw *file, ptie_recording_info *info, const 
 
 /* Names nobody knows are mistakes. */
 static ptie_status check_keys(const raw *file, json_t *object) {
-    static const char *const keys[] = {"width", "height", "sample", "offset", "stride", "row", "frames", "bottom_up",
-                                       "frame_rate", "pixel", "exposure", "bit_depth", "unit", "camera", "comment", NULL};
+    static const char *const keys[] = {
+        "width",      "height", "sample",   "offset",    "stride", "row",    "frames",  "bottom_up",
+        "frame_rate", "pixel",  "exposure", "bit_depth", "unit",   "camera", "comment", NULL};
     const char *key;
     json_t *value;
     json_object_foreach(object, key, value) {
         const char *const *known = keys;
         while (*known && strcmp(*known, key) != 0) known++;
         if (!*known)
-            return PTIE_FAIL(PTIE_EFORMAT, "%s: unknown key \"%s\" (did you mean \"%s\"?)", file->sidecar, key,
-                             ptie_nearest_word(key, keys));
+            return PTIE_FAIL(PTIE_EFORMAT, "%s: unknown key \"%s\" (did you mean \"%s\"?)",
+                             file->sidecar, key, ptie_nearest_word(key, keys));
     }
     return PTIE_OK;
 }
@@ -157,9 +163,11 @@ static ptie_status read_sidecar(raw *file, ptie_recording_info *info, int64_t *f
     json_t *object = json_loadb(text, bytes, JSON_REJECT_DUPLICATES, &error);
     ptie_free(text);
     if (!object)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: not JSON (line %d): %s", file->sidecar, error.line, error.text);
-    ptie_status status = json_is_object(object) ? check_keys(file, object)
-                                                : PTIE_FAIL(PTIE_EFORMAT, "%s: not a JSON object", file->sidecar);
+        return PTIE_FAIL(PTIE_EFORMAT, "%s: not JSON (line %d): %s", file->sidecar, error.line,
+                         error.text);
+    ptie_status status = json_is_object(object)
+                             ? check_keys(file, object)
+                             : PTIE_FAIL(PTIE_EFORMAT, "%s: not a JSON object", file->sidecar);
     if (status == PTIE_OK) status = take_layout(file, info, object);
     if (status == PTIE_OK) status = take_facts(file, info, object);
     if (status == PTIE_OK) status = take_integer(file, object, "frames", 1, FARTHEST, frames);
@@ -169,12 +177,15 @@ static ptie_status read_sidecar(raw *file, ptie_recording_info *info, int64_t *f
 
 /* --- the reader ------------------------------------------------------------------------------- */
 
-static ptie_status count_frames(const raw *file, ptie_recording_info *info, uint64_t file_bytes, int64_t announced) {
+static ptie_status count_frames(const raw *file, ptie_recording_info *info, uint64_t file_bytes,
+                                int64_t announced) {
     const uint64_t frame_bytes = ptie_raster_bytes(&file->raster);
     if (file_bytes < file->offset || file_bytes - file->offset < frame_bytes)
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: file too short for a frame (expected %llu bytes behind %llu, found %llu in all)",
-                         file->path, (unsigned long long)frame_bytes, (unsigned long long)file->offset,
-                         (unsigned long long)file_bytes);
+        return PTIE_FAIL(
+            PTIE_EFORMAT,
+            "%s: file too short for a frame (expected %llu bytes behind %llu, found %llu in all)",
+            file->path, (unsigned long long)frame_bytes, (unsigned long long)file->offset,
+            (unsigned long long)file_bytes);
     const int64_t there = 1 + (int64_t)((file_bytes - file->offset - frame_bytes) / file->stride);
     ptie_info_set_frames(info, there, announced > 0 ? announced : there);
     if (announced == 0 && (file_bytes - file->offset - frame_bytes) % file->stride != 0)
@@ -188,14 +199,17 @@ static ptie_status raw_load(raw *file, ptie_recording_info *info, const char *pa
     file->path = ptie_strdup(path);
     if (!file->path) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
     PTIE_TRY(ptie_input_open(&file->stream, path, &file_bytes));
-    const int length = snprintf(file->sidecar, PATH_MAX, "%.*s.json", (int)(strrchr(path, '.') - path), path);
+    const int length =
+        snprintf(file->sidecar, PATH_MAX, "%.*s.json", (int)(strrchr(path, '.') - path), path);
     if (length < 0 || length >= PATH_MAX || access(file->sidecar, F_OK) != 0)
-        return PTIE_FAIL(PTIE_EIO, "%s: raw frames need a description (expected %s beside them)", path, file->sidecar);
+        return PTIE_FAIL(PTIE_EIO, "%s: raw frames need a description (expected %s beside them)",
+                         path, file->sidecar);
     PTIE_TRY(read_sidecar(file, info, &announced));
     return count_frames(file, info, file_bytes, announced);
 }
 
-static ptie_status raw_open(void **state, ptie_recording_info *info, const char *path, const char *inside) {
+static ptie_status raw_open(void **state, ptie_recording_info *info, const char *path,
+                            const char *inside) {
     (void)inside;
     raw *file;
     PTIE_TRY(ptie_alloc_status(&file, 1, sizeof *file, path));

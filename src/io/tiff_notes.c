@@ -39,10 +39,14 @@ static double number_of(const char *text) {
 static int64_t take_imagej(ptie_recording_info *info, const char *text, double per_unit) {
     char value[32];
     int64_t images = 0;
-    if (value_of(text, "unit", value) && per_unit > 0) info->pixel_m = unit_of(value, PTIE_LENGTH) / per_unit;
-    if (value_of(text, "finterval", value) && number_of(value) > 0) info->frame_rate_hz = 1 / number_of(value);
-    if (value_of(text, "vunit", value)) ptie_clean_copy(info->unit, sizeof info->unit, value, sizeof value);
-    if (value_of(text, "images", value) && !ptie_parse_integer(value, 1, INT64_MAX, &images)) images = 0;
+    if (value_of(text, "unit", value) && per_unit > 0)
+        info->pixel_m = unit_of(value, PTIE_LENGTH) / per_unit;
+    if (value_of(text, "finterval", value) && number_of(value) > 0)
+        info->frame_rate_hz = 1 / number_of(value);
+    if (value_of(text, "vunit", value))
+        ptie_clean_copy(info->unit, sizeof info->unit, value, sizeof value);
+    if (value_of(text, "images", value) && !ptie_parse_integer(value, 1, INT64_MAX, &images))
+        images = 0;
     return images;
 }
 
@@ -74,11 +78,13 @@ static void take_value(void *user, const char *path, const char *value) {
 static void take_ome(ptie_recording_info *info, const char *xml) {
     ome o = {0};
     if (ptie_xml_read(xml, strlen(xml), "OME", take_value, &o) != PTIE_OK) {
-        snprintf(info->warning, sizeof info->warning, "the OME description is damaged: no pixel size, no frame rate");
+        snprintf(info->warning, sizeof info->warning,
+                 "the OME description is damaged: no pixel size, no frame rate");
         return;
     }
     info->pixel_m = number_of(o.pixel) * unit_of(*o.pixel_unit ? o.pixel_unit : "um", PTIE_LENGTH);
-    const double interval_s = number_of(o.interval) * unit_of(*o.interval_unit ? o.interval_unit : "s", PTIE_TIME);
+    const double interval_s =
+        number_of(o.interval) * unit_of(*o.interval_unit ? o.interval_unit : "s", PTIE_TIME);
     info->frame_rate_hz = interval_s > 0 ? 1 / interval_s : 0;
     ptie_clean_copy(info->date, sizeof info->date, o.date, sizeof o.date);
     ptie_clean_copy(info->comment, sizeof info->comment, o.comment, sizeof o.comment);

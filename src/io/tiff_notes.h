@@ -5,9 +5,9 @@
 
 #include <ptie/recording.h>
 
-/* Takes pixel, frame rate, unit and the like into `info`, as far as they are there.  per_unit: pixels per unit of
-   ImageJ's scale (XResolution; 0 if unknown).  Returns how many images ImageJ announces, 0 if none: it writes a stack
-   above 4 GiB behind a single directory. */
+/* Takes pixel, frame rate, unit and the like into `info`, as far as they are there.  per_unit:
+   pixels per unit of ImageJ's scale (XResolution; 0 if unknown).  Returns how many images ImageJ
+   announces, 0 if none: it writes a stack above 4 GiB behind a single directory. */
 int64_t ptie_tiff_notes(ptie_recording_info *info, const char *description, double per_unit);
 
 #endif

@@ -5,7 +5,8 @@
 
 #include <stddef.h>
 
-/* out: height rows; columns: width columns of height values each.  In tiles, so that both sides stay in the cache. */
+/* out: height rows; columns: width columns of height values each.  In tiles, so that both sides
+ * stay in the cache. */
 static inline void ptie_transpose(float *out, const float *columns, size_t height, size_t width) {
     enum { TILE = 16 };
     for (size_t top = 0; top < height; top += TILE)

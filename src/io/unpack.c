@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Eight samples at a time: a shuffle puts the two bytes that hold a sample into one 16-bit lane, a
- * multiplication pushes the sample before it out at the top, a shift the one after it at the bottom.
+ * multiplication pushes the sample before it out at the top, a shift the one after it at the
+ * bottom.
  */
 #include "io/unpack.h"
 
@@ -30,8 +31,8 @@ typedef uint16_t lanes16 __attribute__((vector_size(16)));
 typedef int32_t lanes32 __attribute__((vector_size(32)));
 typedef float floats __attribute__((vector_size(32)));
 
-/* Defines a function that unpacks whole groups and returns how many samples those were.  The list is
-   the shuffle: for each sample its second byte and its first. */
+/* Defines a function that unpacks whole groups and returns how many samples those were.  The list
+   is the shuffle: for each sample its second byte and its first. */
 #define UNPACK_GROUPS(bits, shifts, ...)                                                           \
     PTIE_CLONES static size_t unpack_groups_##bits(float *out, const unsigned char *in,            \
                                                    size_t count) {                                 \
@@ -49,8 +50,10 @@ typedef float floats __attribute__((vector_size(32)));
         return done;                                                                               \
     }
 
-#define SHIFTS_10 {1, 4, 16, 64, 1, 4, 16, 64}
-#define SHIFTS_12 {1, 16, 1, 16, 1, 16, 1, 16}
+#define SHIFTS_10                                                                                  \
+    { 1, 4, 16, 64, 1, 4, 16, 64 }
+#define SHIFTS_12                                                                                  \
+    { 1, 16, 1, 16, 1, 16, 1, 16 }
 UNPACK_GROUPS(10, SHIFTS_10, 1, 0, 2, 1, 3, 2, 4, 3, 6, 5, 7, 6, 8, 7, 9, 8)
 UNPACK_GROUPS(12, SHIFTS_12, 1, 0, 2, 1, 4, 3, 5, 4, 7, 6, 8, 7, 10, 9, 11, 10)
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Samples of 10 or 12 bits, packed without gaps, most significant bit first: 4 in 5 bytes or 2 in 3. */
+/* Samples of 10 or 12 bits, packed without gaps, most significant bit first: 4 in 5 bytes or 2
+ * in 3. */
 #ifndef PTIE_IO_UNPACK_H
 #define PTIE_IO_UNPACK_H
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Photron MRAW, 12 bits packed or 16, and the CIHX file beside it: what a camera would have written. */
+/* Photron MRAW, 12 bits packed or 16, and the CIHX file beside it: what a camera would have
+ * written. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +28,8 @@ static void mraw_discard(void *state) {
 
 /* "X.cihx" of "X.mraw". */
 static ptie_status open_header(mraw_output *mraw, const ptie_writer_job *job) {
-    const size_t stem = (size_t)(strrchr(job->path, '.') - job->path), bytes = stem + sizeof ".cihx";
+    const size_t stem = (size_t)(strrchr(job->path, '.') - job->path),
+                 bytes = stem + sizeof ".cihx";
     char *path;
     PTIE_TRY(ptie_alloc_status(&path, bytes, 1, job->path));
     snprintf(path, bytes, "%.*s.cihx", (int)stem, job->path);
@@ -39,7 +41,8 @@ static ptie_status open_header(mraw_output *mraw, const ptie_writer_job *job) {
 /* 12 bits in use are packed unless 16-bit samples are asked for; without a depth there are 12. */
 static ptie_status choose_bits(mraw_output *mraw, const ptie_writer_job *job) {
     mraw->info = job->info;
-    if (mraw->info.bit_depth == 0) mraw->info.bit_depth = strcmp(job->info.sample, "u16") == 0 ? 16 : 12;
+    if (mraw->info.bit_depth == 0)
+        mraw->info.bit_depth = strcmp(job->info.sample, "u16") == 0 ? 16 : 12;
     const bool packed = mraw->info.bit_depth == 12 && strcmp(job->info.sample, "u16") != 0;
     mraw->color_bit = packed ? 12 : 16;
     if (mraw->info.bit_depth >= 1 && mraw->info.bit_depth <= 16) return PTIE_OK;
@@ -68,7 +71,8 @@ static unsigned count_of(float value, float largest) {
     return (unsigned)(clipped + 0.5f);
 }
 
-/* Two samples in three bytes, most significant bits first; a last one alone takes two.  Returns the bytes. */
+/* Two samples in three bytes, most significant bits first; a last one alone takes two.  Returns the
+ * bytes. */
 static size_t code_12(unsigned char *out, const float *in, size_t count) {
     for (size_t i = 0; i < count; i += 2, out += 3) {
         const unsigned a = count_of(in[i], 4095), b = i + 1 < count ? count_of(in[i + 1], 4095) : 0;
@@ -93,7 +97,8 @@ static ptie_status mraw_append(void *state, const float *frame) {
     const size_t count = (size_t)mraw->info.width_px * (size_t)mraw->info.height_px;
     const float largest = (float)((1 << mraw->info.bit_depth) - 1);
     unsigned char block[2 * BLOCK];
-    PTIE_TRY(ptie_image_finite(frame, mraw->info.width_px, mraw->info.height_px, mraw->data.file.path));
+    PTIE_TRY(
+        ptie_image_finite(frame, mraw->info.width_px, mraw->info.height_px, mraw->data.file.path));
     for (size_t done = 0; done < count; done += BLOCK) {
         const size_t now = count - done < BLOCK ? count - done : BLOCK;
         const size_t bytes = mraw->color_bit == 12 ? code_12(block, frame + done, now)

@@ -57,7 +57,8 @@ static void check_frame(const json_t *expected, float *data, size_t count) {
     assert_true((double)data[0] == number(expected, "min"));
     assert_true((double)data[count - 1] == number(expected, "max"));
     /* NumPy's median of an even number of values, cut to an integer */
-    assert_true(floor((double)(data[count / 2 - 1] + data[count / 2]) / 2) == number(expected, "median"));
+    assert_true(floor((double)(data[count / 2 - 1] + data[count / 2]) / 2) ==
+                number(expected, "median"));
 }
 
 static void check_key(const char *key, const json_t *expected) {
@@ -71,7 +72,8 @@ static void check_key(const char *key, const json_t *expected) {
     snprintf(path, sizeof path, "%s%s", found, strstr(name, "chart1") ? ":/codes" : "");
     assert_ok(ptie_recording_open(&recording, path));
     const ptie_recording_info *info = ptie_recording_get_info(recording);
-    assert_true(info->width_px == number(expected, "w") && info->height_px == number(expected, "h"));
+    assert_true(info->width_px == number(expected, "w") &&
+                info->height_px == number(expected, "h"));
     const size_t count = (size_t)info->width_px * (size_t)info->height_px;
     float *data = malloc(count * sizeof *data);
     assert_ok(ptie_recording_read(recording, frame, data));

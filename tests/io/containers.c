@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Stacks of other programs (tests/golden/make_containers.py): MATLAB, OME, ImageJ, raw frames; real ones against
- * SciPy, h5py and tifffile. */
+/* Stacks of other programs (tests/golden/make_containers.py): MATLAB, OME, ImageJ, raw frames; real
+ * ones against SciPy, h5py and tifffile. */
 #include "support/files.h"
 
 #include <stdlib.h>
@@ -25,20 +25,21 @@ static void check_frame(ptie_recording *recording, int64_t t) {
     float data[GOLDEN_PIXELS];
     const char *sample = ptie_recording_get_info(recording)->sample;
     assert_ok(ptie_recording_read(recording, t, data));
-    for (int32_t i = 0; i < GOLDEN_PIXELS; i++) assert_true((double)data[i] == golden_value(sample, t, i));
+    for (int32_t i = 0; i < GOLDEN_PIXELS; i++)
+        assert_true((double)data[i] == golden_value(sample, t, i));
 }
 
 /* Forwards and backwards. */
 static void every_kind_is_read(void **state) {
     (void)state;
     static const char *const files[][3] = {
-        {"plain.mat", "MAT", "f64"},           {"deflated.mat", "MAT", "f64"},
-        {"big_endian.mat", "MAT", "u16"},      {"several.mat:/u8", "MAT", "u8"},
-        {"several.mat:/i16", "MAT", "i16"},    {"several.mat:/f32", "MAT", "f32"},
-        {"several.mat:/u16", "MAT", "u16"},    {"several.mat:/i32", "MAT", "i32"},
-        {"v73.mat", "MAT 7.3", "f32"},         {"stack.ome.tif", "TIFF", "u16"},
-        {"no_units.ome.tif", "TIFF", "f32"},   {"one_directory.tif", "TIFF", "f32"},
-        {"gaps.raw", "raw", "u16"},            {"plain.f32", "raw", "f32"},
+        {"plain.mat", "MAT", "f64"},         {"deflated.mat", "MAT", "f64"},
+        {"big_endian.mat", "MAT", "u16"},    {"several.mat:/u8", "MAT", "u8"},
+        {"several.mat:/i16", "MAT", "i16"},  {"several.mat:/f32", "MAT", "f32"},
+        {"several.mat:/u16", "MAT", "u16"},  {"several.mat:/i32", "MAT", "i32"},
+        {"v73.mat", "MAT 7.3", "f32"},       {"stack.ome.tif", "TIFF", "u16"},
+        {"no_units.ome.tif", "TIFF", "f32"}, {"one_directory.tif", "TIFF", "f32"},
+        {"gaps.raw", "raw", "u16"},          {"plain.f32", "raw", "f32"},
     };
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         ptie_recording *recording = open_container(files[i][0]);
@@ -98,10 +99,11 @@ static void what_cannot_be_read_is_named(void **state) {
                  {"gaps.raw:/a", PTIE_EFORMAT, "raw files have no data sets"}};
     ptie_recording *recording;
     for (size_t i = 0; i < sizeof files / sizeof *files; i++)
-        assert_fails(ptie_recording_open(&recording, golden_container(files[i].name)), files[i].status,
-                     files[i].fragment);
+        assert_fails(ptie_recording_open(&recording, golden_container(files[i].name)),
+                     files[i].status, files[i].fragment);
     support_write(support_temporary("alone.raw"), "x", 1);
-    assert_fails(ptie_recording_open(&recording, support_temporary("alone.raw")), PTIE_EIO, "alone.json");
+    assert_fails(ptie_recording_open(&recording, support_temporary("alone.raw")), PTIE_EIO,
+                 "alone.json");
 }
 
 /* --- damage ----------------------------------------------------------------------------------- */
@@ -160,7 +162,8 @@ static void a_cut_stack_says_so(void **state) {
     const char *path = support_temporary("cut.tif");
     support_write(path, data, bytes - 1);
     assert_ok(ptie_recording_open(&recording, path));
-    assert_string_equal(ptie_recording_get_info(recording)->warning, "file is cut short: 2 of 3 frames are there");
+    assert_string_equal(ptie_recording_get_info(recording)->warning,
+                        "file is cut short: 2 of 3 frames are there");
     check_frame(recording, 1);
     ptie_recording_close(recording);
     support_write(path, data, bytes - 2 * 140 - 1);
@@ -184,14 +187,21 @@ static void sidecars_that_lie(void **state) {
         {"{\"height\": 5, \"sample\": \"u8\"}", PTIE_EFORMAT, "found 0 x 5"},
         {"{\"width\": 32769, \"height\": 5, \"sample\": \"u8\"}", PTIE_EFORMAT, "1 .. 32768"},
         {"{\"width\": 7.5, \"height\": 5, \"sample\": \"u8\"}", PTIE_EFORMAT, "a whole number"},
-        {"{\"width\": 32768, \"height\": 32768, \"sample\": \"f64\"}", PTIE_EFORMAT, "too short for a frame"},
+        {"{\"width\": 32768, \"height\": 32768, \"sample\": \"f64\"}", PTIE_EFORMAT,
+         "too short for a frame"},
         {"{\"width\": 7, \"height\": 5, \"sample\": \"u8\", \"row\": 6}", PTIE_EFORMAT, "of 7 .. "},
-        {"{\"width\": 7, \"height\": 5, \"sample\": \"u8\", \"stride\": 34}", PTIE_EFORMAT, "of 35 .. "},
-        {"{\"width\": 7, \"height\": 5, \"sample\": \"u8\", \"offset\": 66}", PTIE_EFORMAT, "35 bytes behind 66, found 100"},
-        {"{\"width\": 7, \"height\": 5, \"sample\": \"u8\", \"offset\": 9223372036854775807}", PTIE_EFORMAT, "\"offset\""},
-        {"{\"width\": 7, \"height\": 5, \"sample\": \"u8\", \"frame_rate\": 25}", PTIE_EFORMAT, "text with a number and its unit"},
-        {"{\"width\": 7, \"height\": 5, \"sample\": \"u8\", \"frame_rate\": \"25 um\"}", PTIE_EFORMAT, "25 kHz"},
-        {"{\"width\": 7, \"height\": 5, \"sample\": \"u8\", \"pixl\": \"25 um\"}", PTIE_EFORMAT, "did you mean \"pixel\""},
+        {"{\"width\": 7, \"height\": 5, \"sample\": \"u8\", \"stride\": 34}", PTIE_EFORMAT,
+         "of 35 .. "},
+        {"{\"width\": 7, \"height\": 5, \"sample\": \"u8\", \"offset\": 66}", PTIE_EFORMAT,
+         "35 bytes behind 66, found 100"},
+        {"{\"width\": 7, \"height\": 5, \"sample\": \"u8\", \"offset\": 9223372036854775807}",
+         PTIE_EFORMAT, "\"offset\""},
+        {"{\"width\": 7, \"height\": 5, \"sample\": \"u8\", \"frame_rate\": 25}", PTIE_EFORMAT,
+         "text with a number and its unit"},
+        {"{\"width\": 7, \"height\": 5, \"sample\": \"u8\", \"frame_rate\": \"25 um\"}",
+         PTIE_EFORMAT, "25 kHz"},
+        {"{\"width\": 7, \"height\": 5, \"sample\": \"u8\", \"pixl\": \"25 um\"}", PTIE_EFORMAT,
+         "did you mean \"pixel\""},
         {"{\"width\": 7, \"width\": 7}", PTIE_EFORMAT, "duplicate"},
         {"[1]", PTIE_EFORMAT, "not a JSON object"},
         {"{", PTIE_EFORMAT, "not JSON (line 1)"},
@@ -234,10 +244,11 @@ static void compare(const char *name, const char *inside, const char *program) {
     assert_ok(ptie_writer_close(writer));
     ptie_recording_close(recording);
     free(data);
-    snprintf(text, sizeof text,
-             "import sys, numpy as np, scipy.io, h5py, tifffile\nf, v = '%s', '%s'\n%s\n"
-             "b = np.load(sys.argv[1])\na = a.reshape(b.shape)\nassert (a.astype('f4') == b).all()\n",
-             file, *inside ? inside + 2 : "", program);
+    snprintf(
+        text, sizeof text,
+        "import sys, numpy as np, scipy.io, h5py, tifffile\nf, v = '%s', '%s'\n%s\n"
+        "b = np.load(sys.argv[1])\na = a.reshape(b.shape)\nassert (a.astype('f4') == b).all()\n",
+        file, *inside ? inside + 2 : "", program);
     support_python(text, out);
 }
 

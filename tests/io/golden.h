@@ -36,7 +36,8 @@ static inline ptie_recording *golden_open(const char *path) {
 }
 
 /* Frame t is factor * (x + 10 y + 50 t); the last frame first. */
-static inline void golden_check_camera(ptie_recording *recording, const char *format, int64_t frames, double factor) {
+static inline void golden_check_camera(ptie_recording *recording, const char *format,
+                                       int64_t frames, double factor) {
     float data[GOLDEN_PIXELS];
     const ptie_recording_info *info = ptie_recording_get_info(recording);
     assert_string_equal(info->format, format);

@@ -31,8 +31,9 @@ static void every_packing_is_read(void **state) {
     }
 }
 
-/* Codes become counts that are linear in light: the inverse transfer function of BT.709 between black 64 and
-   white 1014 -> 4064; half a count of rounding, and the 0.35 that the maker rounds up. */
+/* Codes become counts that are linear in light: the inverse transfer function of BT.709 between
+   black 64 and white 1014 -> 4064; half a count of rounding, and the 0.35 that the maker rounds up.
+ */
 static void ten_bits_are_expanded(void **state) {
     (void)state;
     float data[GOLDEN_PIXELS];
@@ -60,7 +61,8 @@ static void a_header_is_understood(void **state) {
     assert_string_equal(info->date, "2023-11-14 22:13:20 UTC");
     assert_string_equal(info->comment, "a  ? plum");
     assert_string_equal(info->trigger, "at frame 2");
-    /* Stamps count 2^-32 s and lose their last two bits: at most 4 of 954437 units in two intervals. */
+    /* Stamps count 2^-32 s and lose their last two bits: at most 4 of 954437 units in two
+     * intervals. */
     assert_near(info->frame_rate_hz, 9000, 9000 * 4.2e-6);
     assert_int_equal(info->skip, 10);
     assert_true(info->exposure_s == 9.7e-6);
@@ -89,11 +91,14 @@ static void a_short_file_is_read_as_far_as_it_goes(void **state) {
     unsigned char *data = support_read(golden_camera("old.cine"), &bytes);
     const char *path = support_temporary("short.cine");
     for (int64_t frames = 2; frames >= 1; frames--) {
-        support_write(path, data, bytes - (size_t)(3 - frames) * 78); /* 8 + 70 bytes of a frame, or a few more */
+        support_write(path, data,
+                      bytes -
+                          (size_t)(3 - frames) * 78); /* 8 + 70 bytes of a frame, or a few more */
         ptie_recording *recording = golden_open(path);
         const ptie_recording_info *info = ptie_recording_get_info(recording);
         char expected[100];
-        snprintf(expected, sizeof expected, "file is cut short: %d of 3 frames are there", (int)frames);
+        snprintf(expected, sizeof expected, "file is cut short: %d of 3 frames are there",
+                 (int)frames);
         assert_string_equal(info->warning, expected);
         golden_check_camera(recording, "CINE", frames, 27);
         ptie_recording_close(recording);
@@ -117,7 +122,8 @@ static ptie_status read_all(const char *path) {
     return status;
 }
 
-/* Up to the first whole frame it is refused; every changed byte is an error with a name, or none. */
+/* Up to the first whole frame it is refused; every changed byte is an error with a name, or none.
+ */
 static void damage_is_survived(void **state) {
     (void)state;
     size_t bytes;

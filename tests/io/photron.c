@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Photron MRAW: every packing (tests/golden/make_cameras.py), what headers say, and what we write. */
+/* Photron MRAW: every packing (tests/golden/make_cameras.py), what headers say, and what we write.
+ */
 #include "support/files.h"
 
 #include <stdlib.h>
@@ -14,10 +15,14 @@ static void every_packing_is_read(void **state) {
         const char *name, *sample;
         double factor;
         int32_t depth;
-    } files[] = {{"u8.mraw", "u8", 1, 8},           {"u10.mraw", "u10 packed", 7, 10},
-                 {"u12.mraw", "u12 packed", 27, 12}, {"padded.mraw", "u12 packed", 27, 12},
-                 {"u16.mraw", "u16", 27, 12},        {"higher.mraw", "u16", 27, 12},
-                 {"xml.mraw", "u12 packed", 27, 12}, {"xml.cihx", "u12 packed", 27, 12},
+    } files[] = {{"u8.mraw", "u8", 1, 8},
+                 {"u10.mraw", "u10 packed", 7, 10},
+                 {"u12.mraw", "u12 packed", 27, 12},
+                 {"padded.mraw", "u12 packed", 27, 12},
+                 {"u16.mraw", "u16", 27, 12},
+                 {"higher.mraw", "u16", 27, 12},
+                 {"xml.mraw", "u12 packed", 27, 12},
+                 {"xml.cihx", "u12 packed", 27, 12},
                  {"u16.cih", "u16", 27, 12}};
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         ptie_recording *recording = golden_open(golden_camera(files[i].name));
@@ -79,14 +84,16 @@ static void headers_that_lie(void **state) {
         ptie_status status;
         const char *fragment;
     } lies[] = {
-        {"Color Bit : 16", "Color Bit : 14", PTIE_EUNSUPPORTED, "expected 8, 10, 12 or 16, found 14"},
+        {"Color Bit : 16", "Color Bit : 14", PTIE_EUNSUPPORTED,
+         "expected 8, 10, 12 or 16, found 14"},
         {"Color Bit : 16", "Color Bit : 12", PTIE_EFORMAT, "3 frames of 53 or 80 bytes, found 210"},
         {"Type : Mono", "Type : Color", PTIE_EUNSUPPORTED, "colour"},
         {"Format : MRaw", "Format : Tiff", PTIE_EUNSUPPORTED, "found Tiff"},
         {"Width : 7", "Width : 0", PTIE_EFORMAT, "found 0 x 5"},
         {"Width : 7", "Width :-7", PTIE_EUNSUPPORTED, "too large"},
         {"Width : 7", "Width : x", PTIE_EFORMAT, "found 0 x 5"},
-        {"Width : 7\r\nImage Height: 5", "Width : 32768\r\nImage Height: 32768", PTIE_EFORMAT, "too short"},
+        {"Width : 7\r\nImage Height: 5", "Width : 32768\r\nImage Height: 32768", PTIE_EFORMAT,
+         "too short"},
         {"Frame : 3", "Frame : 0", PTIE_EFORMAT, "number of frames"},
         {"Frame : 3", "Frame : 9223372036854775807", PTIE_EFORMAT, "number of frames"},
         {"#Camera", "#Kamera", PTIE_EFORMAT, "not a CIHX header"},
@@ -101,9 +108,9 @@ static void headers_that_lie(void **state) {
         char *header = (char *)support_read(golden_camera("u16.cih"), &bytes);
         const char *at = memmem(header, bytes, lies[i].from, strlen(lies[i].from));
         assert_non_null(at);
-        const int length = snprintf(text, sizeof text, "%.*s%s%.*s", (int)(at - header), header, lies[i].to,
-                                    (int)(bytes - (size_t)(at - header) - strlen(lies[i].from)),
-                                    at + strlen(lies[i].from));
+        const int length = snprintf(
+            text, sizeof text, "%.*s%s%.*s", (int)(at - header), header, lies[i].to,
+            (int)(bytes - (size_t)(at - header) - strlen(lies[i].from)), at + strlen(lies[i].from));
         support_write(support_temporary("lie.cih"), text, (size_t)length);
         print_message("# %s\n", lies[i].to);
         assert_fails(ptie_recording_open(&recording, support_temporary("lie.mraw")), lies[i].status,
@@ -151,7 +158,8 @@ static void the_other_file_is_missing(void **state) {
                  "expected a .cihx or .cih beside it");
     assert_fails(ptie_recording_open(&recording, support_temporary("alone2.cih")), PTIE_EIO,
                  "expected the .mraw beside it");
-    assert_fails(ptie_recording_open(&recording, support_temporary("nothere.mraw")), PTIE_EIO, "No such file");
+    assert_fails(ptie_recording_open(&recording, support_temporary("nothere.mraw")), PTIE_EIO,
+                 "No such file");
 }
 
 static void a_header_alone_is_described(void **state) {
@@ -170,8 +178,10 @@ static void a_header_alone_is_described(void **state) {
     assert_ok(ptie_recording_describe(&info, golden_camera("u12.cih")));
     assert_true(info.frames == 3 && !*info.warning);
     support_write(support_temporary("frames.mraw"), "x", 1);
-    assert_fails(ptie_recording_describe(&info, support_temporary("frames.mraw")), PTIE_EIO, ".cihx or .cih beside it");
-    assert_fails(ptie_recording_describe(&info, support_temporary("nothere.cih")), PTIE_EIO, "No such file");
+    assert_fails(ptie_recording_describe(&info, support_temporary("frames.mraw")), PTIE_EIO,
+                 ".cihx or .cih beside it");
+    assert_fails(ptie_recording_describe(&info, support_temporary("nothere.cih")), PTIE_EIO,
+                 "No such file");
 }
 
 /* --- writing ---------------------------------------------------------------------------------- */
@@ -194,7 +204,8 @@ static ptie_status write_frames(const char *path, const ptie_recording_info *inf
     float data[GOLDEN_PIXELS];
     PTIE_TRY(ptie_writer_create(&writer, path, "counts", info, false));
     for (int64_t t = 0; t < 3; t++) {
-        for (int32_t i = 0; i < GOLDEN_PIXELS; i++) data[i] = (float)(27 * golden_value("u", t, i) + 0.4);
+        for (int32_t i = 0; i < GOLDEN_PIXELS; i++)
+            data[i] = (float)(27 * golden_value("u", t, i) + 0.4);
         if (t == 0) data[0] = -3;
         const ptie_status status = ptie_writer_append(writer, data);
         if (status != PTIE_OK) {
@@ -283,7 +294,8 @@ static void both_files_or_none(void **state) {
     support_assert_nothing_left(path);
     support_assert_nothing_left(header);
     support_write(header, "mine", 4);
-    assert_fails(ptie_writer_create(&writer, path, "counts", &camera, false), PTIE_EEXIST, "both.cihx");
+    assert_fails(ptie_writer_create(&writer, path, "counts", &camera, false), PTIE_EEXIST,
+                 "both.cihx");
     support_assert_nothing_left(path);
     data[3] = __builtin_nanf("");
     assert_ok(ptie_writer_create(&writer, path, "counts", &camera, true));

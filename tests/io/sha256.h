@@ -30,7 +30,8 @@ static inline void sha256_begin(uint32_t k[64], uint32_t state[8]) {
     }
 }
 
-static inline void sha256_block(uint32_t state[8], const uint32_t k[64], const unsigned char *block) {
+static inline void sha256_block(uint32_t state[8], const uint32_t k[64],
+                                const unsigned char *block) {
     uint32_t w[64], s[8];
     for (int i = 0; i < 16; i++)
         w[i] = (uint32_t)block[4 * i] << 24 | (uint32_t)block[4 * i + 1] << 16 |
