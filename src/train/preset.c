@@ -23,9 +23,9 @@ static const char *const boundary_names[] = {"periodic", "mirror", NULL};
  * Noise of `paper`, the one thing the paper does not state: the linear TIE and its inverse undo each
  * other, so all that separates noisy from clean is camera noise divided by k^2.  Its rms is 0.04397
  * (2 pi / wavelength) sigma N pixel^2 / defocus = 5.3 rad * sigma here; the maps themselves, 1 rad high,
- * have an rms of 0.17 rad (median of 500 samples).  0.8 % .. 8 % make clouds of one quarter to two and a
- * half times the flow's own rms: they partly or fully hide it, as the paper's Fig. 4 says.  Only sigma /
- * amplitude matters. */
+ * have an rms of 0.17 rad (median of 500 samples).  1.5 % .. 15 % are chosen so that the paper's recipe
+ * ends near its Table 2 (models/paper.md); they make clouds of one half to five times the flow's own
+ * rms, which partly or fully hide it, as its Fig. 4 says.  Only sigma / amplitude matters. */
 static ptie_preset built_in(int which, const char *name) {
     ptie_preset paper = {
         .width_px = 256,
@@ -37,7 +37,7 @@ static ptie_preset built_in(int which, const char *name) {
         .defocus_m = 10e-3,
         .propagation = PTIE_TIE_SPECTRAL,
         .boundary = PTIE_PERIODIC,
-        .noise = {0.008, 0.08},
+        .noise = {0.015, 0.15},
     };
     /* Diffraction makes most of the artifact; sigma is that of a camera at 25,000 fps. */
     ptie_preset realistic = paper;
