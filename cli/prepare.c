@@ -4,7 +4,8 @@
 
 #include "cli.h"
 
-static const char *const steps[] = {"dark", "split", "mix", "flat", "gain", "registration", "mask", NULL};
+static const char *const steps[] = {"dark", "split",        "mix",  "flat",
+                                    "gain", "registration", "mask", NULL};
 
 static const char examples[] =
     "  # what the solver takes\n"
@@ -40,7 +41,8 @@ static int parse(settings *s, int argc, char **argv) {
         {'r', "rig", OPTION_TEXT, &s->rig_path, "FILE", .help = "how the set-up is built (.ini)"},
         {'o', "output", OPTION_TEXT, &p->output, "FILE", .help = "planes to write (.h5)"},
         {0, "until", OPTION_CHOICE, &s->until, "STEP", .choices = steps, .help = "last step"},
-        {0, "frames", OPTION_FRAMES, &s->frames, "a:b:step", .help = "frames to take, a Python slice"},
+        {0, "frames", OPTION_FRAMES, &s->frames, "a:b:step",
+         .help = "frames to take, a Python slice"},
         PLANE_OPTIONS(p->plane),
         {0, "reference", OPTION_TEXT, &p->reference, "FILE",
          .help = "no-flow recording, instead of the rig's"},
@@ -52,8 +54,9 @@ static int parse(settings *s, int argc, char **argv) {
     };
     const command_usage usage = {
         .name = "prepare",
-        .purpose = "Takes a recording to the planes that the solver sees, or to what they are after any "
-                   "step before.",
+        .purpose =
+            "Takes a recording to the planes that the solver sees, or to what they are after any "
+            "step before.",
         .examples = examples,
         .synopsis = "--rig FILE RECORDING -o FILE.h5 [options]",
         .notes = notes,
@@ -69,7 +72,8 @@ static int parse(settings *s, int argc, char **argv) {
     if (!s->rig_path) return misused("prepare: missing rig (expected --rig FILE.ini)");
     if (!p->output) return misused("prepare: missing output (expected -o FILE.h5)");
     if (!ends_in(p->output, ".h5") && !ends_in(p->output, ".hdf5"))
-        return misused("prepare: --output: expected a name ending in .h5 or .hdf5, found '%s'", p->output);
+        return misused("prepare: --output: expected a name ending in .h5 or .hdf5, found '%s'",
+                       p->output);
     p->until = (ptie_step)s->until;
     p->frames = s->frames;
     p->overwrite = s->compute.force;
@@ -84,7 +88,8 @@ static ptie_status prepare(settings *s) {
     progress_start(&progress, s->compute.progress, "prepare", "frames");
     ptie_status status = ptie_rig_load(&s->rig, s->rig_path);
     if (status == PTIE_OK) status = open_context(&ctx, &s->compute);
-    if (status == PTIE_OK) status = ptie_prepare_planes(ctx, &s->params, progress_callback(&progress));
+    if (status == PTIE_OK)
+        status = ptie_prepare_planes(ctx, &s->params, progress_callback(&progress));
     progress_end(&progress);
     ptie_ctx_free(ctx);
     return status;

@@ -31,10 +31,12 @@ static int print_overview(void) {
 
 int rig_command(int argc, char **argv) {
     const char *names[COUNT(rig_commands) + 1] = {0};
-    if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) return print_overview();
+    if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)
+        return print_overview();
     for (size_t i = 0; i < COUNT(rig_commands); i++) {
         names[i] = rig_commands[i].name;
         if (strcmp(argv[1], names[i]) == 0) return rig_commands[i].run(argc - 1, argv + 1);
     }
-    return misused("rig: unknown command '%s' (did you mean '%s'?)", argv[1], ptie_nearest_word(argv[1], names));
+    return misused("rig: unknown command '%s' (did you mean '%s'?)", argv[1],
+                   ptie_nearest_word(argv[1], names));
 }

@@ -37,17 +37,18 @@ static int parse(settings *s, int argc, char **argv) {
          .help = "rig file to write; if not given, RIG is changed in place"},
         {'f', "force", OPTION_FLAG, &s->force, .help = "replace existing output"},
     };
-    const command_usage usage = {.name = "rig calibrate",
-                                 .purpose = "Measures where the planes lie on the grid of I+ (shift, magnification, "
-                                            "rotation) and their gains, and writes them into the rig.",
-                                 .examples = examples,
-                                 .synopsis = "RIG [--target FILE] [--reference FILE] [-o FILE] [options]",
-                                 .notes = notes,
-                                 .least = 1,
-                                 .most = 1,
-                                 .operand = "RIG",
-                                 .options = options,
-                                 .count = COUNT(options)};
+    const command_usage usage = {
+        .name = "rig calibrate",
+        .purpose = "Measures where the planes lie on the grid of I+ (shift, magnification, "
+                   "rotation) and their gains, and writes them into the rig.",
+        .examples = examples,
+        .synopsis = "RIG [--target FILE] [--reference FILE] [-o FILE] [options]",
+        .notes = notes,
+        .least = 1,
+        .most = 1,
+        .operand = "RIG",
+        .options = options,
+        .count = COUNT(options)};
     operand_list files;
     int code = parse_options(&usage, argc, argv, &files);
     if (code != GO_ON) return code;
@@ -67,8 +68,8 @@ static void print_plane(const char *role, const ptie_plane_calibration *c) {
 }
 
 /* The keys of a plane's section, as text. */
-static void add_settings(ptie_rig_setting *list, size_t *count, char values[KEYS][VALUE_BYTES], const char *role,
-                         const ptie_plane_calibration *c) {
+static void add_settings(ptie_rig_setting *list, size_t *count, char values[KEYS][VALUE_BYTES],
+                         const char *role, const ptie_plane_calibration *c) {
     const ptie_similarity *p = &c->where.place;
     snprintf(values[0], VALUE_BYTES, "%.6f", c->gain);
     snprintf(values[1], VALUE_BYTES, "%.4f", p->shift_x_px);
@@ -79,7 +80,8 @@ static void add_settings(ptie_rig_setting *list, size_t *count, char values[KEYS
 }
 
 /* Prints what was measured and writes it. */
-static ptie_status write_rig(const settings *s, const ptie_plane_calibration calibration[PTIE_ROLES],
+static ptie_status write_rig(const settings *s,
+                             const ptie_plane_calibration calibration[PTIE_ROLES],
                              const ptie_rig *rig) {
     ptie_rig_setting list[PTIE_ROLES * KEYS];
     char values[PTIE_ROLES][KEYS][VALUE_BYTES];
@@ -87,7 +89,9 @@ static ptie_status write_rig(const settings *s, const ptie_plane_calibration cal
     for (int i = 1; i < PTIE_ROLES; i++) {
         if (!rig->plane[i].used) continue;
         if (!calibration[i].measured) {
-            say("ptie: rig calibrate: '%s' shows nothing that 'plus' does: its section is left as it is", roles[i]);
+            say("ptie: rig calibrate: '%s' shows nothing that 'plus' does: its section is left as "
+                "it is",
+                roles[i]);
             continue;
         }
         print_plane(roles[i], &calibration[i]);
@@ -109,8 +113,9 @@ int rig_calibrate(int argc, char **argv) {
     if (s.reference) snprintf(rig.reference, sizeof rig.reference, "%s", s.reference);
     const char *recording = s.target ? s.target : rig.reference;
     if (!recording[0])
-        return misused("rig calibrate: missing frames without flow (expected --target or --reference FILE, or "
-                       "'reference' in the rig)");
+        return misused(
+            "rig calibrate: missing frames without flow (expected --target or --reference FILE, or "
+            "'reference' in the rig)");
     status = ptie_rig_calibrate(calibration, &rig, recording, NULL);
     if (status == PTIE_OK) status = write_rig(&s, calibration, &rig);
     if (status != PTIE_OK) return failed(status);

@@ -28,17 +28,18 @@ static int parse(settings *s, int argc, char **argv) {
         PLANE_OPTIONS(s->plane),
         {0, "json", OPTION_FLAG, &s->json, .help = "findings as JSON instead of lines"},
     };
-    const command_usage usage = {.name = "rig check",
-                                 .purpose = "Compares a rig with a recording: sizes, exposure, mosaic, planes, flat "
-                                            "field, registration, optics, noise.",
-                                 .examples = examples,
-                                 .synopsis = "RIG RECORDING [options]",
-                                 .notes = notes,
-                                 .least = 1,
-                                 .most = 2,
-                                 .operand = "RIG",
-                                 .options = options,
-                                 .count = COUNT(options)};
+    const command_usage usage = {
+        .name = "rig check",
+        .purpose = "Compares a rig with a recording: sizes, exposure, mosaic, planes, flat "
+                   "field, registration, optics, noise.",
+        .examples = examples,
+        .synopsis = "RIG RECORDING [options]",
+        .notes = notes,
+        .least = 1,
+        .most = 2,
+        .operand = "RIG",
+        .options = options,
+        .count = COUNT(options)};
     operand_list files;
     int code = parse_options(&usage, argc, argv, &files);
     if (code != GO_ON) return code;

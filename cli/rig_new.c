@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* ptie rig new: a rig file from options.  What the user wrote goes into the file as it is; the library checks it. */
+/* ptie rig new: a rig file from options.  What the user wrote goes into the file as it is; the
+ * library checks it. */
 #include <string.h>
 
 #include "cli.h"
@@ -33,8 +34,10 @@ static const rig_option rig_options[] = {
     {"planes", "set", "NAME", "pair, triple, five or reference (default: pair)"},
     {"planes", "layout", "NAME",
      "separate, mosaic, side-by-side, top-bottom or quadrants (default: separate)"},
-    {"planes", "mosaic", "ANGLES", "sony, crysta, or the angles of a cell row by row, \"90 45 135 0\""},
-    {"planes", "plus", "CHANNELS", "where I+ is: 0, \"0.98*0 + 0.02*45\", left, top, tl, or a data set"},
+    {"planes", "mosaic", "ANGLES",
+     "sony, crysta, or the angles of a cell row by row, \"90 45 135 0\""},
+    {"planes", "plus", "CHANNELS",
+     "where I+ is: 0, \"0.98*0 + 0.02*45\", left, top, tl, or a data set"},
     {"planes", "minus", "CHANNELS", "where I- is"},
     {"planes", "zero", "CHANNELS", "where I0 is"},
     {"planes", "plus2", "CHANNELS", "where the outer I+ is"},
@@ -66,13 +69,14 @@ static int parse(settings *s, int argc, char **argv) {
                                   .value = &s->value[i],
                                   .argument = rig_options[i].argument,
                                   .help = rig_options[i].help};
-    const command_usage usage = {.name = "rig new",
-                                 .purpose = "Writes a rig file: how a set-up is built, with every key explained.",
-                                 .examples = examples,
-                                 .synopsis = "-o FILE.ini [options]",
-                                 .notes = notes,
-                                 .options = options,
-                                 .count = COUNT(options)};
+    const command_usage usage = {
+        .name = "rig new",
+        .purpose = "Writes a rig file: how a set-up is built, with every key explained.",
+        .examples = examples,
+        .synopsis = "-o FILE.ini [options]",
+        .notes = notes,
+        .options = options,
+        .count = COUNT(options)};
     operand_list operands;
     int code = parse_options(&usage, argc, argv, &operands);
     if (code != GO_ON) return code;
@@ -100,11 +104,15 @@ int rig_new(int argc, char **argv) {
     int code = parse(&s, argc, argv);
     if (code != GO_ON) return code;
     for (int i = 0; i < RIG_OPTIONS; i++)
-        if (s.value[i] && strcmp(rig_options[i].key, "layout") == 0) add_usual_planes(list, &count, s.value[i]);
+        if (s.value[i] && strcmp(rig_options[i].key, "layout") == 0)
+            add_usual_planes(list, &count, s.value[i]);
     for (int i = 0; i < RIG_OPTIONS; i++)
-        if (s.value[i]) list[count++] = (ptie_rig_setting){rig_options[i].section, rig_options[i].key, s.value[i]};
+        if (s.value[i])
+            list[count++] =
+                (ptie_rig_setting){rig_options[i].section, rig_options[i].key, s.value[i]};
     ptie_status status = ptie_rig_edit(s.output, NULL, list, count, s.force);
     if (status != PTIE_OK) return failed(status);
-    say("%s: written; 'ptie rig check %s RECORDING' compares it with a recording", s.output, s.output);
+    say("%s: written; 'ptie rig check %s RECORDING' compares it with a recording", s.output,
+        s.output);
     return DONE;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The planes of a recording as the solver sees them, or as they are after any step before, so that each step can be
- * looked at.  docs/math.md (P1)-(P9).
+/* The planes of a recording as the solver sees them, or as they are after any step before, so that
+ * each step can be looked at.  docs/math.md (P1)-(P9).
  */
 #ifndef PTIE_PREPARE_H
 #define PTIE_PREPARE_H
@@ -21,15 +21,15 @@ typedef enum ptie_step {
 } ptie_step;
 
 typedef struct ptie_prepare_params {
-    uint32_t struct_size;          /* set by ptie_prepare_params_init */
-    const ptie_rig *rig;           /* required */
-    const char *recording;         /* as in ptie_run_params */
+    uint32_t struct_size;  /* set by ptie_prepare_params_init */
+    const ptie_rig *rig;   /* required */
+    const char *recording; /* as in ptie_run_params */
     const char *plane[PTIE_ROLES];
     const char *reference, *dark, *mask;
-    ptie_step until;               /* last step, default PTIE_STEP_MASK */
-    const char *output;            /* .h5; required */
-    const char *provenance;        /* command line to keep in the file, or NULL */
-    ptie_frame_range frames;       /* frames to take; default 0, 0, 1 */
+    ptie_step until;         /* last step, default PTIE_STEP_MASK */
+    const char *output;      /* .h5; required */
+    const char *provenance;  /* command line to keep in the file, or NULL */
+    ptie_frame_range frames; /* frames to take; default 0, 0, 1 */
     bool overwrite;
 } ptie_prepare_params;
 
@@ -37,8 +37,10 @@ PTIE_API void ptie_prepare_params_init(ptie_prepare_params *params);
 
 /* Takes the frames through the steps and writes
      /entry/data/NAME  [T, H, W] float32, one per image, channel or plane, in the recording's unit
-   whole or not at all.  The bytes do not depend on the number of threads.  Errors: those of ptie_run. */
-PTIE_API PTIE_NODISCARD ptie_status ptie_prepare_planes(ptie_ctx *ctx, const ptie_prepare_params *params,
+   whole or not at all.  The bytes do not depend on the number of threads.  Errors: those of
+   ptie_run. */
+PTIE_API PTIE_NODISCARD ptie_status ptie_prepare_planes(ptie_ctx *ctx,
+                                                        const ptie_prepare_params *params,
                                                         ptie_progress progress);
 
 #endif

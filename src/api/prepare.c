@@ -8,10 +8,12 @@
 #include "run/prepare_planes.h"
 
 void ptie_prepare_params_init(ptie_prepare_params *params) {
-    *params = (ptie_prepare_params){.struct_size = sizeof *params, .until = PTIE_STEP_MASK, .frames = {.step = 1}};
+    *params = (ptie_prepare_params){
+        .struct_size = sizeof *params, .until = PTIE_STEP_MASK, .frames = {.step = 1}};
 }
 
-ptie_status ptie_prepare_planes(ptie_ctx *ctx, const ptie_prepare_params *params, ptie_progress progress) {
+ptie_status ptie_prepare_planes(ptie_ctx *ctx, const ptie_prepare_params *params,
+                                ptie_progress progress) {
     static const char where[] = "ptie_prepare_planes";
     ptie_prepare_params own;
     ptie_rig rig;
@@ -22,7 +24,8 @@ ptie_status ptie_prepare_planes(ptie_ctx *ctx, const ptie_prepare_params *params
     PTIE_TRY(ptie_check_integer(own.frames.first, 0, INT64_MAX, where, "frames.first"));
     PTIE_TRY(ptie_check_integer(own.frames.end, 0, INT64_MAX, where, "frames.end"));
     PTIE_TRY(ptie_check_integer(own.frames.step, 1, INT64_MAX, where, "frames.step"));
-    PTIE_TRY(ptie_check_integer((int64_t)own.until, PTIE_STEP_DARK, PTIE_STEP_MASK, where, "until"));
+    PTIE_TRY(
+        ptie_check_integer((int64_t)own.until, PTIE_STEP_DARK, PTIE_STEP_MASK, where, "until"));
     PTIE_TRY(ptie_rig_take(&rig, own.rig, where));
     PTIE_TRY(ptie_rig_replace(rig.reference, own.reference, where));
     PTIE_TRY(ptie_rig_replace(rig.dark, own.dark, where));

@@ -19,8 +19,8 @@ ptie_status ptie_rig_load(ptie_rig *rig, const char *path) {
     return ptie_rig_read(rig, path);
 }
 
-ptie_status ptie_rig_edit(const char *to, const char *from, const ptie_rig_setting *settings, size_t count,
-                          bool overwrite) {
+ptie_status ptie_rig_edit(const char *to, const char *from, const ptie_rig_setting *settings,
+                          size_t count, bool overwrite) {
     static const char where[] = "ptie_rig_edit";
     PTIE_TRY(ptie_check_pointer(to, where, "to"));
     if (count > 0) PTIE_TRY(ptie_check_pointer(settings, where, "settings"));
@@ -62,10 +62,14 @@ static ptie_status check_numbers(const ptie_rig *rig, const char *where) {
 
 static ptie_status check_choices(const ptie_rig *rig, const char *where) {
     PTIE_TRY(ptie_check_integer((int64_t)rig->layout, 0, PTIE_LAYOUT_QUADRANTS, where, "layout"));
-    PTIE_TRY(ptie_check_integer((int64_t)rig->demosaic, 0, PTIE_DEMOSAIC_FOURIER, where, "demosaic"));
-    PTIE_TRY(ptie_check_integer((int64_t)rig->background, 0, PTIE_BACKGROUND_ZERNIKE, where, "background"));
-    PTIE_TRY(ptie_check_integer((int64_t)rig->method, PTIE_SOLVE_DIRECT, PTIE_SOLVE_US_TIE, where, "method"));
-    return ptie_check_integer((int64_t)rig->boundary, PTIE_PERIODIC, PTIE_MIRROR, where, "boundary");
+    PTIE_TRY(
+        ptie_check_integer((int64_t)rig->demosaic, 0, PTIE_DEMOSAIC_FOURIER, where, "demosaic"));
+    PTIE_TRY(ptie_check_integer((int64_t)rig->background, 0, PTIE_BACKGROUND_ZERNIKE, where,
+                                "background"));
+    PTIE_TRY(ptie_check_integer((int64_t)rig->method, PTIE_SOLVE_DIRECT, PTIE_SOLVE_US_TIE, where,
+                                "method"));
+    return ptie_check_integer((int64_t)rig->boundary, PTIE_PERIODIC, PTIE_MIRROR, where,
+                              "boundary");
 }
 
 ptie_status ptie_rig_take(ptie_rig *rig, const ptie_rig *given, const char *where) {
@@ -83,13 +87,15 @@ ptie_status ptie_rig_replace(char path[512], const char *file, const char *where
     return PTIE_FAIL(PTIE_EINVAL, "%s: path longer than 511 bytes: %s", where, file);
 }
 
-static ptie_status check_files(const char *recording, const char *const plane[PTIE_ROLES], const char *where) {
+static ptie_status check_files(const char *recording, const char *const plane[PTIE_ROLES],
+                               const char *where) {
     if (recording || (plane && plane[PTIE_PLUS])) return PTIE_OK;
     return ptie_check_pointer(NULL, where, "recording");
 }
 
-ptie_status ptie_rig_check(const ptie_rig *rig, const char *recording, const char *const plane[PTIE_ROLES],
-                           const char *target, ptie_rig_report *report) {
+ptie_status ptie_rig_check(const ptie_rig *rig, const char *recording,
+                           const char *const plane[PTIE_ROLES], const char *target,
+                           ptie_rig_report *report) {
     static const char where[] = "ptie_rig_check";
     ptie_rig own;
     PTIE_TRY(ptie_check_pointer(report, where, "report"));

@@ -6,9 +6,9 @@
 #include "run/prepare.h"
 #include "run/worker.h"
 
-/* Gives the plan the median phase of the rig's still frames, if it names some: of at most 31 of them, spread over their
-   range. */
-ptie_status ptie_background_measure(ptie_frame_plan *plan, ptie_source *source, const ptie_prepare *prepare,
-                                    const ptie_rig *rig);
+/* Gives the plan the median phase of the rig's still frames, if it names some: of at most 31 of
+   them, spread over their range. */
+ptie_status ptie_background_measure(ptie_frame_plan *plan, ptie_source *source,
+                                    const ptie_prepare *prepare, const ptie_rig *rig);
 
 #endif

@@ -24,8 +24,9 @@ static ptie_status measure_gains(ptie_plane_calibration *calibration, ptie_sampl
     for (int32_t i = 1; i < plan->planes; i++) {
         ptie_plane_calibration *c = &calibration[plan->role[i]];
         c->gain = sum[i] / s->frames;
-        c->gain_deviation =
-            s->frames > 1 ? sqrt(fmax(0, squares[i] - sum[i] * c->gain) / (s->frames - 1)) : (double)NAN;
+        c->gain_deviation = s->frames > 1
+                                ? sqrt(fmax(0, squares[i] - sum[i] * c->gain) / (s->frames - 1))
+                                : (double)NAN;
     }
     return PTIE_OK;
 }
@@ -36,8 +37,8 @@ static ptie_status measure(ptie_plane_calibration *calibration, ptie_sampling *s
     PTIE_TRY(ptie_sampling_planes(s, s->image, PTIE_STEP_FLAT));
     for (int32_t i = 1; i < plan->planes; i++) {
         ptie_plane_calibration *c = &calibration[plan->role[i]];
-        ptie_status status =
-            ptie_prep_register(&c->where, s->plane[0], s->plane[i], plan->light, plan->width, plan->height);
+        ptie_status status = ptie_prep_register(&c->where, s->plane[0], s->plane[i], plan->light,
+                                                plan->width, plan->height);
         if (status != PTIE_OK && status != PTIE_ENUMERIC) return status;
         c->measured = status == PTIE_OK;
     }
@@ -48,9 +49,12 @@ ptie_status ptie_rig_measure(ptie_plane_calibration calibration[PTIE_ROLES], con
                              const char *recording, const char *const plane[PTIE_ROLES]) {
     ptie_sampling s;
     if (rig->one_plane)
-        return PTIE_FAIL(PTIE_EINVAL, "rig: one plane has nothing to be calibrated against (expected a set of several)");
+        return PTIE_FAIL(
+            PTIE_EINVAL,
+            "rig: one plane has nothing to be calibrated against (expected a set of several)");
     for (int i = 0; i < PTIE_ROLES; i++) calibration[i] = (ptie_plane_calibration){.gain = 1};
-    const bool itself = recording && strcmp(recording, rig->reference) == 0; /* flat, there is nothing to see */
+    const bool itself =
+        recording && strcmp(recording, rig->reference) == 0; /* flat, there is nothing to see */
     ptie_status status = ptie_sampling_open(&s, rig, recording, plane, !itself);
     if (status == PTIE_OK) status = measure(calibration, &s);
     ptie_sampling_close(&s);

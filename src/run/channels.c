@@ -38,7 +38,8 @@ static const char *next(const char *text) {
 }
 
 /* "0.98*45", "45"; text goes behind it.  False if it is neither. */
-static bool parse_term(double mix[PTIE_CHANNELS], const ptie_rig *rig, const char **text, double sign) {
+static bool parse_term(double mix[PTIE_CHANNELS], const ptie_rig *rig, const char **text,
+                       double sign) {
     char *end;
     double weight = ptie_scan_number(*text, &end);
     if (end != *text && *next(end) == '*')
@@ -58,7 +59,8 @@ const char *ptie_mix_parse(double mix[PTIE_CHANNELS], const ptie_rig *rig, const
     char first[PTIE_CHANNEL_BYTES], second[PTIE_CHANNEL_BYTES];
     ptie_channel_name(first, rig, 0);
     ptie_channel_name(second, rig, 1);
-    snprintf(expected, 128, "channels of the layout such as '%s' or '0.98*%s + 0.02*%s'", first, first, second);
+    snprintf(expected, 128, "channels of the layout such as '%s' or '0.98*%s + 0.02*%s'", first,
+             first, second);
     double sum[PTIE_CHANNELS] = {0}, size = 0;
     for (text = next(text);;) {
         double sign = 1;

@@ -7,8 +7,9 @@
 
 #include "base/status.h"
 
-ptie_status ptie_rig_compare(const ptie_rig *rig, const char *recording, const char *const plane[PTIE_ROLES],
-                             const char *target, ptie_rig_report *report);
+ptie_status ptie_rig_compare(const ptie_rig *rig, const char *recording,
+                             const char *const plane[PTIE_ROLES], const char *target,
+                             ptie_rig_report *report);
 ptie_status ptie_rig_measure(ptie_plane_calibration calibration[PTIE_ROLES], const ptie_rig *rig,
                              const char *recording, const char *const plane[PTIE_ROLES]);
 

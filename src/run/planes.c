@@ -22,7 +22,9 @@ bool ptie_set_has(ptie_plane_set set, int role) {
 ptie_plane_set ptie_rig_set(const ptie_rig *rig) {
     int roles = 0, set = 0;
     for (int i = 0; i < PTIE_ROLES; i++) roles |= rig->plane[i].used << i;
-    while (set < PTIE_SETS && (set_roles[set] != roles || (set == PTIE_SET_REFERENCE) != rig->one_plane)) set++;
+    while (set < PTIE_SETS &&
+           (set_roles[set] != roles || (set == PTIE_SET_REFERENCE) != rig->one_plane))
+        set++;
     return (ptie_plane_set)set;
 }
 
@@ -42,16 +44,22 @@ ptie_status ptie_rig_check_planes(const ptie_rig *rig, const char *where) {
     double z_m[PTIE_ROLES];
     const int32_t count = ptie_rig_planes(rig, role, z_m);
     if (ptie_rig_set(rig) == PTIE_SETS)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: the planes make no set (expected plus and minus, these and zero, all five, "
-                                      "or plus and one_plane)", where);
+        return PTIE_FAIL(
+            PTIE_EINVAL,
+            "%s: the planes make no set (expected plus and minus, these and zero, all five, "
+            "or plus and one_plane)",
+            where);
     for (int32_t i = 0; i < count; i++)
         for (int32_t j = 0; j < i; j++)
             if (fabs(z_m[i] - z_m[j]) < LEAST_STEP_M)
-                return PTIE_FAIL(PTIE_EINVAL, "%s: defocus: '%s' and '%s' are one plane (expected different "
-                                              "distances, found %g m and %g m)",
-                                 where, ptie_role_names[role[j]], ptie_role_names[role[i]], z_m[j], z_m[i]);
+                return PTIE_FAIL(PTIE_EINVAL,
+                                 "%s: defocus: '%s' and '%s' are one plane (expected different "
+                                 "distances, found %g m and %g m)",
+                                 where, ptie_role_names[role[j]], ptie_role_names[role[i]], z_m[j],
+                                 z_m[i]);
     if (z_m[0] < z_m[1] && !rig->one_plane)
-        return PTIE_FAIL(PTIE_EINVAL, "%s: defocus: '%s' must lie below 'plus' (found %g m and %g m)", where,
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "%s: defocus: '%s' must lie below 'plus' (found %g m and %g m)", where,
                          ptie_role_names[role[1]], z_m[1], z_m[0]);
     return PTIE_OK;
 }

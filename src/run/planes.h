@@ -10,15 +10,22 @@
 /* "plus", "minus", "zero", "plus2", "minus2". */
 extern const char *const ptie_role_names[PTIE_ROLES];
 
-/* The sets of planes that there are: I+ and I-; with I0; with the outer pair; I+ and its no-flow reference. */
-typedef enum ptie_plane_set { PTIE_SET_PAIR, PTIE_SET_TRIPLE, PTIE_SET_FIVE, PTIE_SET_REFERENCE, PTIE_SETS } ptie_plane_set;
+/* The sets of planes that there are: I+ and I-; with I0; with the outer pair; I+ and its no-flow
+ * reference. */
+typedef enum ptie_plane_set {
+    PTIE_SET_PAIR,
+    PTIE_SET_TRIPLE,
+    PTIE_SET_FIVE,
+    PTIE_SET_REFERENCE,
+    PTIE_SETS
+} ptie_plane_set;
 
 bool ptie_set_has(ptie_plane_set set, int role);
 /* PTIE_SETS if the rig's planes are none of them. */
 ptie_plane_set ptie_rig_set(const ptie_rig *rig);
 
-/* The planes in the solver's order: by role; a set of one plane has its reference too, as PTIE_ZERO in focus.
-   Returns their count. */
+/* The planes in the solver's order: by role; a set of one plane has its reference too, as PTIE_ZERO
+   in focus. Returns their count. */
 int32_t ptie_rig_planes(const ptie_rig *rig, ptie_role role[PTIE_ROLES], double z_m[PTIE_ROLES]);
 
 /* The planes are a set and lie apart, I- below I+.  `where` begins the message. */

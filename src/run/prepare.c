@@ -26,9 +26,12 @@ static work carve(const ptie_prepare *p, ptie_slicer *slicer) {
     for (int32_t i = 0; i < p->measured; i++)
         if (p->resampler[i]) step = larger(step, ptie_prep_resampler_scratch(p->resampler[i]));
     if (p->light) step = larger(step, ptie_fill_scratch_bytes(p->width, p->height));
-    for (int32_t i = 0; i < p->images; i++) w.image[i] = ptie_slice(slicer, p->sensor_pixels, sizeof(float));
-    for (int32_t i = 0; i < p->channels; i++) w.channel[i] = ptie_slice(slicer, p->pixels, sizeof(float));
-    for (int32_t i = 0; i < p->planes; i++) w.plane[i] = ptie_slice(slicer, p->pixels, sizeof(float));
+    for (int32_t i = 0; i < p->images; i++)
+        w.image[i] = ptie_slice(slicer, p->sensor_pixels, sizeof(float));
+    for (int32_t i = 0; i < p->channels; i++)
+        w.channel[i] = ptie_slice(slicer, p->pixels, sizeof(float));
+    for (int32_t i = 0; i < p->planes; i++)
+        w.plane[i] = ptie_slice(slicer, p->pixels, sizeof(float));
     w.step = ptie_slice(slicer, step, 1);
     return w;
 }
@@ -46,16 +49,15 @@ static void subtract_dark(const ptie_prepare *p, const work *w, const float *con
     }
 }
 
-/* Planes as sums of channels, or as they came.  The reference of a set of one plane comes last and is not
-   measured. */
+/* Planes as sums of channels, or as they came.  The reference of a set of one plane comes last and
+   is not measured. */
 static void mix(const ptie_prepare *p, const work *w) {
     for (int32_t i = 0; i < p->measured; i++) {
         if (p->channels == 0)
             memcpy(w->plane[i], w->image[i], p->pixels * sizeof(float));
         else
             ptie_mix_channels(w->plane[i], (const float *const *)w->channel,
-                              p->rig.plane[p->role[i]].mix,
-                              p->channels, p->pixels);
+                              p->rig.plane[p->role[i]].mix, p->channels, p->pixels);
     }
 }
 
@@ -78,10 +80,12 @@ static ptie_status match_means(const ptie_prepare *p, const work *w) {
         mean[i] = ptie_masked_mean(w->plane[i], p->light, p->pixels);
         target += mean[i] / p->planes;
         if (!(mean[i] > 0))
-            return PTIE_FAIL(PTIE_ENUMERIC, "plane '%s': mean intensity is not positive (expected > 0, found %g)",
+            return PTIE_FAIL(PTIE_ENUMERIC,
+                             "plane '%s': mean intensity is not positive (expected > 0, found %g)",
                              ptie_role_names[p->role[i]], mean[i]);
     }
-    for (int32_t i = 0; i < p->planes; i++) ptie_scale_image(w->plane[i], target / mean[i], p->pixels);
+    for (int32_t i = 0; i < p->planes; i++)
+        ptie_scale_image(w->plane[i], target / mean[i], p->pixels);
     return PTIE_OK;
 }
 
@@ -91,8 +95,8 @@ static void bring_to_grid(const ptie_prepare *p, const work *w) {
 }
 
 /* Images to planes, up to a step; `raw`: means are not matched. */
-static ptie_status compute(const ptie_prepare *p, const work *w, const float *const *images, ptie_step last,
-                           bool raw) {
+static ptie_status compute(const ptie_prepare *p, const work *w, const float *const *images,
+                           ptie_step last, bool raw) {
     subtract_dark(p, w, images);
     if (last < PTIE_STEP_SPLIT) return PTIE_OK;
     if (p->splitter) ptie_prep_split(p->splitter, w->channel, w->image[0], w->step);
@@ -106,24 +110,27 @@ static ptie_status compute(const ptie_prepare *p, const work *w, const float *co
     return PTIE_OK;
 }
 
-ptie_status ptie_prepare_raw(const ptie_prepare *p, const float *const *images, float *const *planes,
-                             ptie_step last, void *scratch) {
+ptie_status ptie_prepare_raw(const ptie_prepare *p, const float *const *images,
+                             float *const *planes, ptie_step last, void *scratch) {
     const work w = carve(p, &(ptie_slicer){.base = scratch});
     PTIE_TRY(compute(p, &w, images, last, true));
-    for (int32_t i = 0; i < p->measured; i++) memcpy(planes[i], w.plane[i], p->pixels * sizeof(float));
+    for (int32_t i = 0; i < p->measured; i++)
+        memcpy(planes[i], w.plane[i], p->pixels * sizeof(float));
     return PTIE_OK;
 }
 
 static void fill_opaque(const ptie_prepare *p, const work *w) {
     if (!p->light) return;
-    for (int32_t i = 0; i < p->planes; i++) ptie_fill_masked(w->plane[i], p->light, p->width, p->height, w->step);
+    for (int32_t i = 0; i < p->planes; i++)
+        ptie_fill_masked(w->plane[i], p->light, p->width, p->height, w->step);
 }
 
 ptie_status ptie_prepare_run(const ptie_prepare *p, const float *const *images, float *const *maps,
                              void *scratch) {
     const work w = carve(p, &(ptie_slicer){.base = scratch});
     float *const *found = w.plane;
-    if (p->last < PTIE_STEP_MIX) found = p->last == PTIE_STEP_SPLIT && p->splitter ? w.channel : w.image;
+    if (p->last < PTIE_STEP_MIX)
+        found = p->last == PTIE_STEP_SPLIT && p->splitter ? w.channel : w.image;
     PTIE_TRY(compute(p, &w, images, p->last, false));
     if (p->last == PTIE_STEP_MASK) fill_opaque(p, &w);
     const size_t bytes = (size_t)p->shape.width_px * (size_t)p->shape.height_px * sizeof(float);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What a preparation needs before the first frame: sizes, registration, dark, no-flow reference, mask. */
+/* What a preparation needs before the first frame: sizes, registration, dark, no-flow reference,
+ * mask. */
 #include "run/prepare_plan.h"
 
 #include <stdio.h>
@@ -12,11 +13,12 @@
 #include "run/channels.h"
 #include "run/planes.h"
 
-/* Darker than this share of the mean, a reference is not divided by: beyond, it is noise that would be amplified. */
+/* Darker than this share of the mean, a reference is not divided by: beyond, it is noise that would
+ * be amplified. */
 #define FLAT_FLOOR 0.05
 
-/* An opaque mask from the light: of so many frames where there is no reference, without specks and pinholes up to
-   4 pixels, and wider by what diffraction at an edge spoils. */
+/* An opaque mask from the light: of so many frames where there is no reference, without specks and
+   pinholes up to 4 pixels, and wider by what diffraction at an edge spoils. */
 enum { MASK_FRAMES = 8, MASK_CLEAN_PX = 2, MASK_MARGIN_PX = 2 };
 
 static ptie_status plan_channels(ptie_prepare *p, const ptie_source_shape *source) {
@@ -44,7 +46,8 @@ static bool in_place(ptie_similarity s) {
 static ptie_status plan_registration(ptie_prepare *p) {
     for (int32_t i = 0; i < p->measured; i++) {
         const ptie_plane *plane = &p->rig.plane[p->role[i]];
-        const ptie_similarity where = {plane->shift_x_px, plane->shift_y_px, plane->magnification, plane->rotation_rad};
+        const ptie_similarity where = {plane->shift_x_px, plane->shift_y_px, plane->magnification,
+                                       plane->rotation_rad};
         if (in_place(where)) continue;
         PTIE_TRY(ptie_prep_resampler(&p->resampler[i], p->width, p->height, where));
         uint8_t *inside;
@@ -74,7 +77,8 @@ static void describe(ptie_prepare *p, const ptie_source_shape *source) {
         for (int32_t i = 0; i < s->planes; i++) s->name[i] = p->channel_name[i];
     }
     if (p->channels > 0 && p->last == PTIE_STEP_DARK)
-        *s = (ptie_prepare_shape){source->width_px, source->height_px, 1, p->rig.pixel_m, {"image"}};
+        *s =
+            (ptie_prepare_shape){source->width_px, source->height_px, 1, p->rig.pixel_m, {"image"}};
 }
 
 static ptie_status plan_sizes(ptie_prepare *p, const ptie_source_shape *source) {
@@ -87,12 +91,13 @@ static ptie_status plan_sizes(ptie_prepare *p, const ptie_source_shape *source) 
     p->pixels = (size_t)p->width * (size_t)p->height;
     describe(p, source);
     if (p->shape.width_px >= 2 && p->shape.height_px >= 2) return PTIE_OK;
-    return PTIE_FAIL(PTIE_ESIZE, "run: frame too small to bin %d x %d (found %d x %d px)", p->rig.binning,
-                     p->rig.binning, p->width, p->height);
+    return PTIE_FAIL(PTIE_ESIZE, "run: frame too small to bin %d x %d (found %d x %d px)",
+                     p->rig.binning, p->rig.binning, p->width, p->height);
 }
 
 static ptie_status alloc_maps(float **maps, int32_t count, size_t pixels) {
-    for (int32_t i = 0; i < count; i++) PTIE_TRY(ptie_alloc_status(&maps[i], pixels, sizeof(float), "run"));
+    for (int32_t i = 0; i < count; i++)
+        PTIE_TRY(ptie_alloc_status(&maps[i], pixels, sizeof(float), "run"));
     return PTIE_OK;
 }
 
@@ -114,7 +119,8 @@ static ptie_status planes_after(still *s, ptie_step last) {
     return ptie_prepare_raw(s->plan, images, s->plane, last, s->scratch);
 }
 
-/* The mean of all reference frames: a set of one plane compares with it, others are divided by theirs. */
+/* The mean of all reference frames: a set of one plane compares with it, others are divided by
+ * theirs. */
 static ptie_status use_reference(still *s) {
     ptie_prepare *p = s->plan;
     PTIE_TRY(ptie_source_mean(s->image, &s->shape, &p->rig, p->rig.reference));
@@ -128,7 +134,8 @@ static ptie_status use_reference(still *s) {
     PTIE_TRY(planes_after(s, PTIE_STEP_MIX));
     PTIE_TRY(alloc_maps(p->flat, p->measured, p->pixels));
     for (int32_t i = 0; i < p->measured; i++)
-        PTIE_TRY(ptie_prep_flat_gain(p->flat[i], s->plane[i], NULL, p->width, p->height, FLAT_FLOOR));
+        PTIE_TRY(
+            ptie_prep_flat_gain(p->flat[i], s->plane[i], NULL, p->width, p->height, FLAT_FLOOR));
     return PTIE_OK;
 }
 
@@ -139,8 +146,10 @@ static ptie_status read_mask(still *s, uint8_t *mask) {
     const ptie_recording_info *info = ptie_io_info(recording);
     ptie_status status = PTIE_OK;
     if (info->width_px != p->width || info->height_px != p->height)
-        status = PTIE_FAIL(PTIE_ESIZE, "%s: mask differs from the planes in size (expected %d x %d px, found %d x %d)",
-                           p->rig.mask, p->width, p->height, info->width_px, info->height_px);
+        status = PTIE_FAIL(
+            PTIE_ESIZE,
+            "%s: mask differs from the planes in size (expected %d x %d px, found %d x %d)",
+            p->rig.mask, p->width, p->height, info->width_px, info->height_px);
     if (status == PTIE_OK) status = ptie_io_read(recording, 0, s->plane[0]);
     for (size_t i = 0; i < p->pixels && status == PTIE_OK; i++) mask[i] = s->plane[0][i] != 0;
     ptie_io_close(recording);
@@ -167,8 +176,8 @@ static ptie_status threshold_mask(still *s, uint8_t *mask) {
     PTIE_TRY(ptie_alloc_status(&light, p->pixels, sizeof *light, "run: mask"));
     ptie_status status = find_light(s, light);
     if (status == PTIE_OK)
-        status = ptie_prep_opaque_mask(mask, light, p->width, p->height, p->rig.mask_below, MASK_CLEAN_PX,
-                                       MASK_MARGIN_PX);
+        status = ptie_prep_opaque_mask(mask, light, p->width, p->height, p->rig.mask_below,
+                                       MASK_CLEAN_PX, MASK_MARGIN_PX);
     ptie_free(light);
     return status;
 }
@@ -191,7 +200,8 @@ static ptie_status bin_mask(uint8_t **out, const uint8_t *mask, const ptie_prepa
     const ptie_prepare_shape *shape = &p->shape;
     const int32_t n = p->rig.binning;
     if (!mask) return PTIE_OK;
-    PTIE_TRY(ptie_alloc_status(out, (size_t)shape->width_px * (size_t)shape->height_px, 1, "run: mask"));
+    PTIE_TRY(
+        ptie_alloc_status(out, (size_t)shape->width_px * (size_t)shape->height_px, 1, "run: mask"));
     for (int32_t y = 0; y < shape->height_px; y++)
         for (int32_t x = 0; x < shape->width_px; x++) {
             uint8_t all = 1;
@@ -233,7 +243,8 @@ static ptie_status build(ptie_prepare *p, ptie_source *source) {
     return status;
 }
 
-ptie_status ptie_prepare_until(ptie_prepare **out, ptie_source *source, const ptie_rig *rig, ptie_step last) {
+ptie_status ptie_prepare_until(ptie_prepare **out, ptie_source *source, const ptie_rig *rig,
+                               ptie_step last) {
     *out = NULL;
     ptie_prepare *p;
     PTIE_TRY(ptie_alloc_status(&p, 1, sizeof *p, "run"));

@@ -12,12 +12,12 @@ struct ptie_prepare {
     ptie_prepare_shape shape;
     ptie_rig rig;
     ptie_step last;
-    int32_t images;            /* of a frame */
+    int32_t images; /* of a frame */
     size_t sensor_pixels;
-    int32_t channels;          /* 0: images are planes */
-    int32_t width, height;     /* of a plane before binning */
+    int32_t channels;      /* 0: images are planes */
+    int32_t width, height; /* of a plane before binning */
     size_t pixels;
-    int32_t planes, measured;  /* of a frame; of those, the ones that each frame brings */
+    int32_t planes, measured; /* of a frame; of those, the ones that each frame brings */
     ptie_role role[PTIE_ROLES];
     char channel_name[PTIE_CHANNELS][PTIE_CHANNEL_BYTES];
 
@@ -32,7 +32,7 @@ struct ptie_prepare {
 
 /* The planes of images after a step, their means not matched.  planes (out): p->measured of
    them. */
-ptie_status ptie_prepare_raw(const ptie_prepare *prepare, const float *const *images, float *const *planes,
-                             ptie_step last, void *scratch);
+ptie_status ptie_prepare_raw(const ptie_prepare *prepare, const float *const *images,
+                             float *const *planes, ptie_step last, void *scratch);
 
 #endif

@@ -12,7 +12,6 @@
 #include "run/run.h"
 #include "run/stages.h"
 
-
 typedef struct preparing {
     const ptie_prepare_params *params;
     ptie_source *source;
@@ -40,7 +39,8 @@ static ptie_status read_frame(void *context, int64_t frame, size_t slot) {
     preparing *p = context;
     float *images[PTIE_ROLES];
     for (int32_t i = 0; i < p->recorded.images; i++) images[i] = image_of(p, slot, i);
-    return ptie_source_read(p->source, p->params->frames.first + frame * p->params->frames.step, images);
+    return ptie_source_read(p->source, p->params->frames.first + frame * p->params->frames.step,
+                            images);
 }
 
 static ptie_status prepare_frame(void *context, int64_t frame, size_t slot, int32_t worker) {
@@ -50,7 +50,8 @@ static ptie_status prepare_frame(void *context, int64_t frame, size_t slot, int3
     float *planes[PTIE_ROLES];
     for (int32_t i = 0; i < p->recorded.images; i++) images[i] = image_of(p, slot, i);
     for (int32_t i = 0; i < p->shape.planes; i++) planes[i] = plane_of(p, slot, i);
-    return ptie_prepare_run(p->plan, images, planes, p->scratch + (size_t)worker * p->scratch_bytes);
+    return ptie_prepare_run(p->plan, images, planes,
+                            p->scratch + (size_t)worker * p->scratch_bytes);
 }
 
 static ptie_status write_frame(void *context, int64_t frame, size_t slot) {
@@ -58,7 +59,8 @@ static ptie_status write_frame(void *context, int64_t frame, size_t slot) {
     char path[128];
     for (int32_t i = 0; i < p->shape.planes; i++) {
         snprintf(path, sizeof path, PTIE_NEXUS_DATA "/%s", p->shape.name[i]);
-        PTIE_TRY(ptie_h5_write(p->output, path, PTIE_H5_F32, (uint64_t)frame, 1, plane_of(p, slot, i)));
+        PTIE_TRY(
+            ptie_h5_write(p->output, path, PTIE_H5_F32, (uint64_t)frame, 1, plane_of(p, slot, i)));
     }
     return PTIE_OK;
 }
@@ -67,8 +69,8 @@ static ptie_status open_inputs(preparing *p) {
     const ptie_prepare_params *params = p->params;
     const ptie_run_params inputs = {.rig = params->rig,
                                     .recording = params->recording,
-                                    .plane = {params->plane[0], params->plane[1], params->plane[2], params->plane[3],
-                                              params->plane[4]}};
+                                    .plane = {params->plane[0], params->plane[1], params->plane[2],
+                                              params->plane[3], params->plane[4]}};
     const char *const paths[] = {params->recording,      params->plane[0],  params->plane[1],
                                  params->plane[2],       params->plane[3],  params->plane[4],
                                  params->rig->reference, params->rig->dark, params->rig->mask};
@@ -76,7 +78,8 @@ static ptie_status open_inputs(preparing *p) {
         PTIE_TRY(ptie_output_differs(params->output, paths[i]));
     PTIE_TRY(ptie_source_open(&p->source, &inputs));
     p->recorded = ptie_source_get_shape(p->source);
-    PTIE_TRY(ptie_io_choose(&p->frames, params->frames, p->recorded.frames, ptie_run_name(&inputs)));
+    PTIE_TRY(
+        ptie_io_choose(&p->frames, params->frames, p->recorded.frames, ptie_run_name(&inputs)));
     PTIE_TRY(ptie_prepare_until(&p->plan, p->source, params->rig, params->until));
     p->shape = ptie_prepare_get_shape(p->plan);
     return PTIE_OK;
@@ -88,9 +91,10 @@ static ptie_status allocate(preparing *p, const ptie_pool *pool) {
     p->image_pixels = (size_t)p->recorded.width_px * (size_t)p->recorded.height_px;
     p->pixels = (size_t)p->shape.width_px * (size_t)p->shape.height_px;
     p->scratch_bytes = ptie_prepare_scratch_bytes(p->plan);
-    PTIE_TRY(ptie_alloc_status(&p->image, p->slots * (size_t)p->recorded.images, p->image_pixels * sizeof(float),
-                               "frames"));
-    PTIE_TRY(ptie_alloc_status(&p->plane, p->slots * (size_t)p->shape.planes, p->pixels * sizeof(float), "planes"));
+    PTIE_TRY(ptie_alloc_status(&p->image, p->slots * (size_t)p->recorded.images,
+                               p->image_pixels * sizeof(float), "frames"));
+    PTIE_TRY(ptie_alloc_status(&p->plane, p->slots * (size_t)p->shape.planes,
+                               p->pixels * sizeof(float), "planes"));
     return ptie_alloc_status(&p->scratch, workers, p->scratch_bytes, "scratch of the planes");
 }
 
@@ -106,7 +110,8 @@ static ptie_status describe(ptie_h5 *h5, const ptie_prepare_params *params) {
 static ptie_status create_output(preparing *p) {
     const ptie_prepare_params *params = p->params;
     ptie_nexus_signal signals[PTIE_ROLES];
-    for (int32_t i = 0; i < p->shape.planes; i++) signals[i] = (ptie_nexus_signal){.name = p->shape.name[i], .unit = ""};
+    for (int32_t i = 0; i < p->shape.planes; i++)
+        signals[i] = (ptie_nexus_signal){.name = p->shape.name[i], .unit = ""};
     const double recorded_hz = p->recorded.frame_rate_hz, rig_hz = params->rig->frame_rate_hz;
     PTIE_TRY(ptie_h5_create(&p->output, params->output, params->overwrite));
     PTIE_TRY(ptie_nexus_begin(p->output,
@@ -121,7 +126,8 @@ static ptie_status create_output(preparing *p) {
     return describe(p->output, params);
 }
 
-ptie_status ptie_prepare_recording(ptie_pool *pool, const ptie_prepare_params *params, ptie_progress progress) {
+ptie_status ptie_prepare_recording(ptie_pool *pool, const ptie_prepare_params *params,
+                                   ptie_progress progress) {
     preparing p = {.params = params};
     ptie_status status = open_inputs(&p);
     if (status == PTIE_OK) status = allocate(&p, pool);

@@ -7,6 +7,7 @@
 
 #include "base/pool.h"
 
-ptie_status ptie_prepare_recording(ptie_pool *pool, const ptie_prepare_params *params, ptie_progress progress);
+ptie_status ptie_prepare_recording(ptie_pool *pool, const ptie_prepare_params *params,
+                                   ptie_progress progress);
 
 #endif

@@ -30,28 +30,36 @@ static double or_else(double value, double otherwise) {
 }
 
 /* Where a plane is on the sensor or in the file. */
-static ptie_status set_origin(ptie_plane *plane, const ptie_rig_file *file, int role, const char *path) {
+static ptie_status set_origin(ptie_plane *plane, const ptie_rig_file *file, int role,
+                              const char *path) {
     const char *name = ptie_role_names[role], *text = file->planes[role];
     char expected[128];
     if (file->rig.layout == PTIE_LAYOUT_SEPARATE) {
         memcpy(plane->source, text, sizeof plane->source);
         if (!text[0] || text[0] == '/') return PTIE_OK;
-        return PTIE_FAIL(PTIE_EFORMAT, "%s: [planes] %s: expected a data set such as /entry/data/%s, found '%s'",
+        return PTIE_FAIL(PTIE_EFORMAT,
+                         "%s: [planes] %s: expected a data set such as /entry/data/%s, found '%s'",
                          path, name, name, text);
     }
     if (!text[0])
-        return PTIE_FAIL(PTIE_EINVAL, "%s: missing key '%s' in [planes] (expected its channel)", path, name);
+        return PTIE_FAIL(PTIE_EINVAL, "%s: missing key '%s' in [planes] (expected its channel)",
+                         path, name);
     const char *wrong = ptie_mix_parse(plane->mix, &file->rig, text, expected);
     if (!wrong) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EFORMAT, "%s: [planes] %s: expected %s, found '%.80s'", path, name, wrong, text);
+    return PTIE_FAIL(PTIE_EFORMAT, "%s: [planes] %s: expected %s, found '%.80s'", path, name, wrong,
+                     text);
 }
 
-static ptie_status set_plane(ptie_plane *plane, const ptie_rig_file *file, int role, const char *path) {
+static ptie_status set_plane(ptie_plane *plane, const ptie_rig_file *file, int role,
+                             const char *path) {
     const ptie_plane_keys *keys = &file->plane[role];
-    const double z_m = or_else(keys->defocus_m, role == PTIE_ZERO ? 0 : ptie_plane_steps[role] * file->defocus_m);
+    const double z_m =
+        or_else(keys->defocus_m, role == PTIE_ZERO ? 0 : ptie_plane_steps[role] * file->defocus_m);
     if (isnan(z_m))
-        return PTIE_FAIL(PTIE_EINVAL, "%s: missing key 'defocus' in [optics] (expected a length such as 10 mm), "
-                                      "or in [%s]", path, ptie_role_names[role]);
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "%s: missing key 'defocus' in [optics] (expected a length such as 10 mm), "
+                         "or in [%s]",
+                         path, ptie_role_names[role]);
     *plane = (ptie_plane){.used = true,
                           .defocus_m = z_m,
                           .gain = or_else(keys->gain, 1),
@@ -65,8 +73,8 @@ static ptie_status set_plane(ptie_plane *plane, const ptie_rig_file *file, int r
 /* A plane that the set does not have is a mistake in either. */
 static ptie_status check_unused(const ptie_rig_file *file, int role, const char *path) {
     if (!file->planes[role][0]) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EINVAL, "%s: [planes] %s has no place in set '%s'", path, ptie_role_names[role],
-                     ptie_set_names[file->set]);
+    return PTIE_FAIL(PTIE_EINVAL, "%s: [planes] %s has no place in set '%s'", path,
+                     ptie_role_names[role], ptie_set_names[file->set]);
 }
 
 static ptie_status convert(ptie_rig_file *file, const char *path) {
@@ -75,11 +83,13 @@ static ptie_status convert(ptie_rig_file *file, const char *path) {
     rig->polarity = file->polarity - 1;
     rig->one_plane = file->set == PTIE_SET_REFERENCE;
     if (rig->layout == PTIE_LAYOUT_MOSAIC && rig->angle_deg[0] == rig->angle_deg[1])
-        return PTIE_FAIL(PTIE_EINVAL, "%s: missing key 'mosaic' in [planes] (expected sony, crysta or four angles)",
-                         path);
+        return PTIE_FAIL(
+            PTIE_EINVAL,
+            "%s: missing key 'mosaic' in [planes] (expected sony, crysta or four angles)", path);
     for (int i = 0; i < PTIE_ROLES; i++) {
         rig->plane[i].used = ptie_set_has((ptie_plane_set)file->set, i);
-        PTIE_TRY(rig->plane[i].used ? set_plane(&rig->plane[i], file, i, path) : check_unused(file, i, path));
+        PTIE_TRY(rig->plane[i].used ? set_plane(&rig->plane[i], file, i, path)
+                                    : check_unused(file, i, path));
     }
     PTIE_TRY(ptie_rig_check_planes(rig, path));
     PTIE_TRY(resolve(rig->reference, "reference", path));
@@ -117,11 +127,11 @@ static double unless(double value, double otherwise) {
 /* The file's form of a plane: what is not as by default. */
 static ptie_plane_keys keys_of(const ptie_plane *plane, double expected_m) {
     return (ptie_plane_keys){.defocus_m = unless(plane->defocus_m, expected_m),
-                        .gain = unless(plane->gain, 1),
-                        .shift_x_px = unless(plane->shift_x_px, 0),
-                        .shift_y_px = unless(plane->shift_y_px, 0),
-                        .magnification = unless(plane->magnification, 1),
-                        .rotation_rad = unless(plane->rotation_rad, 0)};
+                             .gain = unless(plane->gain, 1),
+                             .shift_x_px = unless(plane->shift_x_px, 0),
+                             .shift_y_px = unless(plane->shift_y_px, 0),
+                             .magnification = unless(plane->magnification, 1),
+                             .rotation_rad = unless(plane->rotation_rad, 0)};
 }
 
 static void print_origin(ptie_text *text, const ptie_rig *rig, const ptie_plane *plane) {

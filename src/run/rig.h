@@ -13,8 +13,8 @@ ptie_status ptie_rig_read(ptie_rig *rig, const char *path);
 ptie_status ptie_rig_read_text(char **text, const char *path);
 /* `path` names the text in messages, and is what its paths are relative to. */
 ptie_status ptie_rig_parse(ptie_rig *rig, const char *text, const char *path);
-ptie_status ptie_rig_change(const char *to, const char *from, const ptie_rig_setting *settings, size_t count,
-                            bool overwrite);
+ptie_status ptie_rig_change(const char *to, const char *from, const ptie_rig_setting *settings,
+                            size_t count, bool overwrite);
 /* The rig as INI text; NULL when memory is short.  Freed with ptie_free. */
 char *ptie_rig_print(const ptie_rig *rig);
 

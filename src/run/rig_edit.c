@@ -14,8 +14,9 @@ static size_t choose_keys(ptie_ini_key *chosen, ptie_plane_set set) {
     for (size_t i = 0; i < ptie_rig_key_count; i++) {
         bool unused = false;
         for (int role = 0; role < PTIE_ROLES; role++)
-            unused |= !ptie_set_has(set, role) && (strcmp(ptie_rig_keys[i].section, ptie_role_names[role]) == 0 ||
-                                                   strcmp(ptie_rig_keys[i].name, ptie_role_names[role]) == 0);
+            unused |= !ptie_set_has(set, role) &&
+                      (strcmp(ptie_rig_keys[i].section, ptie_role_names[role]) == 0 ||
+                       strcmp(ptie_rig_keys[i].name, ptie_role_names[role]) == 0);
         if (!unused) chosen[count++] = ptie_rig_keys[i];
     }
     return count;
@@ -31,15 +32,18 @@ static ptie_status print_template(ptie_text *text, const char *set) {
                          ptie_nearest_word(set, ptie_set_names));
     PTIE_TRY(ptie_alloc_status(&keys, ptie_rig_key_count, sizeof *keys, "rig"));
     const size_t count = choose_keys(keys, (ptie_plane_set)file.set);
-    ptie_text_append(text, "; How the set-up is built.  'ptie rig check' compares it with a recording, 'ptie rig "
-                           "calibrate' measures gains and\n; registration.  Keys behind a semicolon are not set.\n\n");
+    ptie_text_append(
+        text,
+        "; How the set-up is built.  'ptie rig check' compares it with a recording, 'ptie rig "
+        "calibrate' measures gains and\n; registration.  Keys behind a semicolon are not set.\n\n");
     ptie_ini_print_helped(text, &file, keys, count);
     ptie_free(keys);
     return PTIE_OK;
 }
 
 /* What the settings begin with: the text of a file, or a template for their set of planes. */
-static ptie_status begin(ptie_text *text, const char *from, const ptie_rig_setting *settings, size_t count) {
+static ptie_status begin(ptie_text *text, const char *from, const ptie_rig_setting *settings,
+                         size_t count) {
     char *file;
     if (!from) {
         const char *set = ptie_set_names[PTIE_SET_PAIR];
@@ -53,8 +57,8 @@ static ptie_status begin(ptie_text *text, const char *from, const ptie_rig_setti
     return PTIE_OK;
 }
 
-ptie_status ptie_rig_change(const char *to, const char *from, const ptie_rig_setting *settings, size_t count,
-                            bool overwrite) {
+ptie_status ptie_rig_change(const char *to, const char *from, const ptie_rig_setting *settings,
+                            size_t count, bool overwrite) {
     ptie_text text = {0};
     ptie_rig rig;
     ptie_status status = begin(&text, from, settings, count);

@@ -12,8 +12,8 @@ typedef struct ptie_plane_keys {
     double defocus_m, gain, shift_x_px, shift_y_px, magnification, rotation_rad;
 } ptie_plane_keys;
 
-/* A rig as a person writes it: pitch of the sensor and magnification instead of the pixel at the object, one defocus
-   for all planes unless they differ, planes as sums of channels. */
+/* A rig as a person writes it: pitch of the sensor and magnification instead of the pixel at the
+   object, one defocus for all planes unless they differ, planes as sums of channels. */
 typedef struct ptie_rig_file {
     ptie_rig rig;
     double pitch_m, magnification, defocus_m;

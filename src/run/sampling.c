@@ -6,7 +6,8 @@
 #include "base/memory.h"
 
 static ptie_status allocate(float **maps, int32_t count, size_t pixels) {
-    for (int32_t i = 0; i < count; i++) PTIE_TRY(ptie_alloc_status(&maps[i], pixels, sizeof(float), "rig"));
+    for (int32_t i = 0; i < count; i++)
+        PTIE_TRY(ptie_alloc_status(&maps[i], pixels, sizeof(float), "rig"));
     return PTIE_OK;
 }
 
@@ -28,7 +29,8 @@ ptie_status ptie_sampling_open(ptie_sampling *s, const ptie_rig *rig, const char
     PTIE_TRY(allocate(s->image, s->shape.images, s->plan->sensor_pixels));
     PTIE_TRY(allocate(s->frame, s->shape.images, s->plan->sensor_pixels));
     PTIE_TRY(allocate(s->plane, s->plan->planes, s->plan->pixels));
-    PTIE_TRY(ptie_alloc_status(&s->scratch, ptie_prepare_scratch_bytes(s->plan), 1, "rig: scratch"));
+    PTIE_TRY(
+        ptie_alloc_status(&s->scratch, ptie_prepare_scratch_bytes(s->plan), 1, "rig: scratch"));
     return ptie_source_average(s->source, s->image, s->frames);
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Some frames of a recording, as planes before flat field and matching: what checks and calibrations look at. */
+/* Some frames of a recording, as planes before flat field and matching: what checks and
+ * calibrations look at. */
 #ifndef PTIE_RUN_SAMPLING_H
 #define PTIE_RUN_SAMPLING_H
 
@@ -8,18 +9,18 @@
 enum { PTIE_SAMPLES = 8 }; /* frames at most, spread over the recording */
 
 typedef struct ptie_sampling {
-    ptie_rig rig;               /* as given, but means are not matched */
+    ptie_rig rig; /* as given, but means are not matched */
     ptie_source *source;
     ptie_source_shape shape;
     ptie_prepare *plan;
-    int32_t frames;             /* looked at */
+    int32_t frames;                               /* looked at */
     float *image[PTIE_ROLES], *frame[PTIE_ROLES]; /* mean, and one frame, as recorded */
-    float *plane[PTIE_ROLES];   /* of either, as asked */
+    float *plane[PTIE_ROLES];                     /* of either, as asked */
     unsigned char *scratch;
 } ptie_sampling;
 
-/* Opens the recording and reads the mean of its samples.  flat: planes are divided by their reference, if the rig
-   has one.  Free it also after a failure. */
+/* Opens the recording and reads the mean of its samples.  flat: planes are divided by their
+   reference, if the rig has one.  Free it also after a failure. */
 ptie_status ptie_sampling_open(ptie_sampling *s, const ptie_rig *rig, const char *recording,
                                const char *const plane[PTIE_ROLES], bool flat);
 void ptie_sampling_close(ptie_sampling *s);

@@ -16,44 +16,53 @@ struct ptie_source {
     char path[PTIE_ROLES][MAX_PATH_BYTES]; /* as opened */
 };
 
-/* "file.h5" and the rig's "/entry/data/plus" make "file.h5:/entry/data/plus"; a file of another kind is the
-   plane itself. */
+/* "file.h5" and the rig's "/entry/data/plus" make "file.h5:/entry/data/plus"; a file of another
+   kind is the plane itself. */
 static ptie_status join(char out[MAX_PATH_BYTES], const char *path, const char *data_set) {
     const bool inside = data_set[0] == '/' && ptie_io_has_data_sets(path);
-    int length = snprintf(out, MAX_PATH_BYTES, "%s%s%s", path, inside ? ":" : "", inside ? data_set : "");
+    int length =
+        snprintf(out, MAX_PATH_BYTES, "%s%s%s", path, inside ? ":" : "", inside ? data_set : "");
     if (length < MAX_PATH_BYTES) return PTIE_OK;
     return PTIE_FAIL(PTIE_EINVAL, "%s: path too long", path);
 }
 
 /* Another data set of the file that holds plus: "file.h5:/entry/data/plus" is in "file.h5". */
-static ptie_status join_beside(char out[MAX_PATH_BYTES], const ptie_source *source, const char *recording,
-                               const char *data_set, const char *role) {
+static ptie_status join_beside(char out[MAX_PATH_BYTES], const ptie_source *source,
+                               const char *recording, const char *data_set, const char *role) {
     if (!data_set[0])
-        return PTIE_FAIL(PTIE_EINVAL, "run: plane '%s' is missing (expected a recording, or its data set in "
-                                      "the rig's [planes])", role);
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "run: plane '%s' is missing (expected a recording, or its data set in "
+                         "the rig's [planes])",
+                         role);
     if (strcmp(ptie_io_info(source->recording[0])->format, "HDF5") != 0)
-        return PTIE_FAIL(PTIE_EINVAL, "run: plane '%s' is missing (expected a recording of its own, since "
-                                      "%s has one plane)", role, recording);
+        return PTIE_FAIL(PTIE_EINVAL,
+                         "run: plane '%s' is missing (expected a recording of its own, since "
+                         "%s has one plane)",
+                         role, recording);
     const char *inside = strstr(recording, ":/");
     char file[MAX_PATH_BYTES];
-    snprintf(file, sizeof file, "%.*s", inside ? (int)(inside - recording) : (int)strlen(recording), recording);
+    snprintf(file, sizeof file, "%.*s", inside ? (int)(inside - recording) : (int)strlen(recording),
+             recording);
     return join(out, file, data_set);
 }
 
 static ptie_status same_shape(const ptie_source *source, int32_t i) {
-    const ptie_recording_info *x = ptie_io_info(source->recording[0]), *y = ptie_io_info(source->recording[i]);
+    const ptie_recording_info *x = ptie_io_info(source->recording[0]),
+                              *y = ptie_io_info(source->recording[i]);
     if (x->width_px != y->width_px || x->height_px != y->height_px)
-        return PTIE_FAIL(PTIE_ESIZE, "%s: frame size differs from %s (expected %d x %d px, found %d x %d)",
-                         source->path[i], source->path[0], x->width_px, x->height_px, y->width_px, y->height_px);
+        return PTIE_FAIL(
+            PTIE_ESIZE, "%s: frame size differs from %s (expected %d x %d px, found %d x %d)",
+            source->path[i], source->path[0], x->width_px, x->height_px, y->width_px, y->height_px);
     if (x->frames != y->frames)
-        return PTIE_FAIL(PTIE_ESIZE, "%s: number of frames differs from %s (expected %lld, found %lld)",
-                         source->path[i], source->path[0], (long long)x->frames, (long long)y->frames);
+        return PTIE_FAIL(
+            PTIE_ESIZE, "%s: number of frames differs from %s (expected %lld, found %lld)",
+            source->path[i], source->path[0], (long long)x->frames, (long long)y->frames);
     return PTIE_OK;
 }
 
 /* Image i of a frame.  A still recording without data sets serves all planes. */
-static ptie_status open_image(ptie_source *source, int32_t i, const ptie_run_params *params, ptie_role role,
-                              bool still) {
+static ptie_status open_image(ptie_source *source, int32_t i, const ptie_run_params *params,
+                              ptie_role role, bool still) {
     const ptie_plane *plane = &params->rig->plane[role];
     char *path = source->path[i];
     if (params->plane[role])
@@ -61,8 +70,8 @@ static ptie_status open_image(ptie_source *source, int32_t i, const ptie_run_par
     else if (i == 0 || still)
         PTIE_TRY(join(path, params->recording, plane->source));
     else
-        PTIE_TRY(join_beside(path, source, params->recording ? params->recording : source->path[0], plane->source,
-                             ptie_role_names[role]));
+        PTIE_TRY(join_beside(path, source, params->recording ? params->recording : source->path[0],
+                             plane->source, ptie_role_names[role]));
     PTIE_TRY(ptie_io_open(&source->recording[i], path));
     source->shape.images = i + 1;
     return same_shape(source, i);
@@ -73,8 +82,9 @@ static ptie_status check_files(const ptie_run_params *params) {
     const ptie_rig *rig = params->rig;
     for (int i = 0; i < PTIE_ROLES; i++)
         if (params->plane[i] && (!rig->plane[i].used || rig->layout != PTIE_LAYOUT_SEPARATE))
-            return PTIE_FAIL(PTIE_EINVAL, "run: plane '%s' has no place in the rig's %s", ptie_role_names[i],
-                             rig->plane[i].used ? "layout (expected one recording)" : "set of planes");
+            return PTIE_FAIL(
+                PTIE_EINVAL, "run: plane '%s' has no place in the rig's %s", ptie_role_names[i],
+                rig->plane[i].used ? "layout (expected one recording)" : "set of planes");
     if (!params->recording && !params->plane[PTIE_PLUS])
         return PTIE_FAIL(PTIE_EINVAL, "run: recording is missing");
     return PTIE_OK;
@@ -119,7 +129,8 @@ int64_t ptie_source_sample(const ptie_source *source, int64_t i, int64_t samples
     return last / steps * i + last % steps * i / steps;
 }
 
-static ptie_status add_frames(ptie_source *source, double *sum, float *const *mean, size_t count, int64_t samples) {
+static ptie_status add_frames(ptie_source *source, double *sum, float *const *mean, size_t count,
+                              int64_t samples) {
     for (int64_t t = 0; t < samples; t++) {
         PTIE_TRY(ptie_source_read(source, ptie_source_sample(source, t, samples), mean));
         for (int32_t k = 0; k < source->shape.images; k++)
@@ -136,17 +147,21 @@ ptie_status ptie_source_average(ptie_source *source, float *const *mean, int64_t
     PTIE_TRY(ptie_alloc_status(&sum, images * count, sizeof *sum, source->path[0]));
     ptie_status status = add_frames(source, sum, mean, count, samples);
     for (size_t k = 0; k < images && status == PTIE_OK; k++)
-        for (size_t i = 0; i < count; i++) mean[k][i] = (float)(sum[k * count + i] / (double)samples);
+        for (size_t i = 0; i < count; i++)
+            mean[k][i] = (float)(sum[k * count + i] / (double)samples);
     ptie_free(sum);
     return status;
 }
 
 /* Still recordings are as large as those they belong to. */
-static ptie_status check_like(const ptie_source *source, const ptie_source_shape *like, const char *path) {
+static ptie_status check_like(const ptie_source *source, const ptie_source_shape *like,
+                              const char *path) {
     const ptie_source_shape *shape = &source->shape;
     if (shape->width_px == like->width_px && shape->height_px == like->height_px) return PTIE_OK;
-    return PTIE_FAIL(PTIE_ESIZE, "%s: frame size differs from the recording's (expected %d x %d px, found %d x %d)",
-                     path, like->width_px, like->height_px, shape->width_px, shape->height_px);
+    return PTIE_FAIL(
+        PTIE_ESIZE,
+        "%s: frame size differs from the recording's (expected %d x %d px, found %d x %d)", path,
+        like->width_px, like->height_px, shape->width_px, shape->height_px);
 }
 
 ptie_status ptie_source_mean(float *const *mean, const ptie_source_shape *like, const ptie_rig *rig,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The reader's side of a run: the sensor images of a frame, as the camera wrote them, from the files that the rig
-   and the caller name. */
+/* The reader's side of a run: the sensor images of a frame, as the camera wrote them, from the
+   files that the rig and the caller name. */
 #ifndef PTIE_RUN_SOURCE_H
 #define PTIE_RUN_SOURCE_H
 
@@ -18,8 +18,8 @@ typedef struct ptie_source_shape {
     double frame_rate_hz, white_level; /* what the recording says, 0: nothing */
 } ptie_source_shape;
 
-/* Opens all recordings of a run's planes and checks that they fit together.  Errors name both files and both
-   sizes. */
+/* Opens all recordings of a run's planes and checks that they fit together.  Errors name both files
+   and both sizes. */
 ptie_status ptie_source_open(ptie_source **out, const ptie_run_params *params);
 void ptie_source_close(ptie_source *source); /* NULL is fine */
 ptie_source_shape ptie_source_get_shape(const ptie_source *source);
@@ -29,11 +29,13 @@ ptie_status ptie_source_read(ptie_source *source, int64_t frame, float *const *i
 
 /* The frame that is sample i of `samples`, spread from the first frame to the last. */
 int64_t ptie_source_sample(const ptie_source *source, int64_t i, int64_t samples);
-/* mean (out): shape.images maps: the mean of all frames or, where there are more, of `most` samples. */
+/* mean (out): shape.images maps: the mean of all frames or, where there are more, of `most`
+ * samples. */
 ptie_status ptie_source_average(ptie_source *source, float *const *mean, int64_t most);
 
-/* mean (out): as many maps as a frame like `like` has images: the mean over all frames of a still recording (dark,
-   no flow) that was taken with the same rig.  A file without data sets serves all planes. */
+/* mean (out): as many maps as a frame like `like` has images: the mean over all frames of a still
+   recording (dark, no flow) that was taken with the same rig.  A file without data sets serves all
+   planes. */
 ptie_status ptie_source_mean(float *const *mean, const ptie_source_shape *like, const ptie_rig *rig,
                              const char *path);
 

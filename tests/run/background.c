@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What is not flow comes off the phase: the median of still frames, a surface, the level of a region. */
+/* What is not flow comes off the phase: the median of still frames, a surface, the level of a
+ * region. */
 #include "support/support.h"
 
 #include <math.h>
@@ -27,7 +28,8 @@ static void write_plane(const char *name, int sign) {
     for (int t = 0; t < FRAMES; t++) {
         for (int i = 0; i < PIXELS; i++) {
             const int y = i / SIDE, x = i % SIDE;
-            frame[i] = (float)(1000 * (1 + sign * (0.001 * background(y, x) + (t < STILL ? 0 : 0.02 * flow(y, x)))));
+            frame[i] = (float)(1000 * (1 + sign * (0.001 * background(y, x) +
+                                                   (t < STILL ? 0 : 0.02 * flow(y, x)))));
         }
         assert_ok(ptie_writer_append(writer, frame));
     }
@@ -86,7 +88,8 @@ static void still_frames_are_the_background(void **state) {
     for (int t = STILL; t < FRAMES; t++)
         for (int i = 0; i < PIXELS; i++) assert_true(without[t][i] == with[t][i] - with[0][i]);
     rig.still_end = FRAMES + 1;
-    assert_fails(run(&rig, with), PTIE_EINVAL, "still_frames leave the recording (expected some of 0:6, found 0:7)");
+    assert_fails(run(&rig, with), PTIE_EINVAL,
+                 "still_frames leave the recording (expected some of 0:6, found 0:7)");
 }
 
 static void a_region_without_flow_is_zero(void **state) {
@@ -98,12 +101,15 @@ static void a_region_without_flow_is_zero(void **state) {
     double sum = 0;
     for (int y = 8; y < 18; y++)
         for (int x = 4; x < 20; x++) sum += (double)phase[FRAMES - 1][y * SIDE + x];
-    assert_near(sum / 160, 0, 1e-6 * largest(phase[FRAMES - 1])); /* f32 of the map, eight times over */
+    assert_near(sum / 160, 0,
+                1e-6 * largest(phase[FRAMES - 1])); /* f32 of the map, eight times over */
     rig.still.width_px = SIDE;
-    assert_fails(run(&rig, phase), PTIE_EINVAL, "[flow] still leaves the phase (expected a part of 64 x 64 px");
+    assert_fails(run(&rig, phase), PTIE_EINVAL,
+                 "[flow] still leaves the phase (expected a part of 64 x 64 px");
 }
 
-/* The background here is a tilted cosine: a plane takes most of it, Zernike polynomials nearly all. */
+/* The background here is a tilted cosine: a plane takes most of it, Zernike polynomials nearly all.
+ */
 static void surfaces_take_off_what_is_smooth(void **state) {
     (void)state;
     static float plain[FRAMES][PIXELS], plane[FRAMES][PIXELS], zernike[FRAMES][PIXELS];

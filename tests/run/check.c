@@ -17,7 +17,8 @@ static const char *file(const char *name) {
     return path;
 }
 
-/* cam.mraw and what belongs to it: a mosaic whose minus plane is darker, shifted, larger and turned. */
+/* cam.mraw and what belongs to it: a mosaic whose minus plane is darker, shifted, larger and
+ * turned. */
 static int setup(void **state) {
     (void)state;
     ptie_ctx *ctx;
@@ -61,13 +62,14 @@ static void calibration_finds_where_the_planes_lie(void **state) {
     const ptie_plane_calibration *c = &found[PTIE_MINUS];
     assert_true(c->measured && !found[PTIE_PLUS].measured && !found[PTIE_ZERO].measured);
     const ptie_similarity *p = &c->where.place, *d = &c->where.deviation;
-    /* Within four of its own standard deviations, which are small enough to be of use: a tenth of a pixel at the
-       corner. */
+    /* Within four of its own standard deviations, which are small enough to be of use: a tenth of a
+       pixel at the corner. */
     assert_near(p->shift_x_px, minus->shift_x_px, 4 * d->shift_x_px);
     assert_near(p->shift_y_px, minus->shift_y_px, 4 * d->shift_y_px);
     assert_near(p->magnification, minus->magnification, 4 * d->magnification);
     assert_near(p->rotation_rad, minus->rotation_rad, 4 * d->rotation_rad);
-    assert_true(d->shift_x_px < 0.05 && d->shift_y_px < 0.05 && d->magnification < 5e-4 && d->rotation_rad < 5e-4);
+    assert_true(d->shift_x_px < 0.05 && d->shift_y_px < 0.05 && d->magnification < 5e-4 &&
+                d->rotation_rad < 5e-4);
     assert_near(c->gain, minus->gain, 0.01);
 }
 
@@ -89,15 +91,19 @@ static void a_right_rig_is_found_right(void **state) {
     (void)state;
     const ptie_rig rig = load("cam_true.ini");
     const ptie_rig_report report = check(&rig);
-    static const char *const good[] = {"size", "saturation", "exposure", "mosaic", "means of planes", "flat field",
-                                       "registration", "noise"};
+    static const char *const good[] = {
+        "size",       "saturation",   "exposure", "mosaic", "means of planes",
+        "flat field", "registration", "noise"};
     for (size_t i = 0; i < sizeof good / sizeof *good; i++)
         assert_int_equal(find(&report, good[i])->verdict, PTIE_GOOD);
-    /* Shot and read noise of the mean light, in electrons: 20 % for a median instead of a variance, and for light that
-       is not even. */
-    const double electrons = find(&report, "exposure")->value * rig.saturation_counts * rig.electrons_per_count;
-    const double sigma = sqrt(electrons + rig.read_noise_electrons * rig.read_noise_electrons) / electrons;
-    /* Bilinear de-mosaicking averages four neighbours with 1/16, 3/16, 3/16, 9/16: noise times 0.625. */
+    /* Shot and read noise of the mean light, in electrons: 20 % for a median instead of a variance,
+       and for light that is not even. */
+    const double electrons =
+        find(&report, "exposure")->value * rig.saturation_counts * rig.electrons_per_count;
+    const double sigma =
+        sqrt(electrons + rig.read_noise_electrons * rig.read_noise_electrons) / electrons;
+    /* Bilinear de-mosaicking averages four neighbours with 1/16, 3/16, 3/16, 9/16: noise times
+     * 0.625. */
     assert_near(find(&report, "noise")->value / (0.625 * sigma), 1, 0.2);
     /* 40 um pixels, 10 mm, 532 nm: pi lambda z / (80 um)^2. */
     assert_near(find(&report, "linear TIE")->value, 3.14159265 * 532e-9 * 10e-3 / 6.4e-9, 1e-3);
@@ -138,11 +144,15 @@ static void one_plane_has_no_registration(void **state) {
     ptie_rig_report report;
     rig.one_plane = true;
     rig.plane[PTIE_MINUS].used = false;
-    assert_fails(ptie_rig_calibrate(found, &rig, file("cam_target.mraw"), NULL), PTIE_EINVAL, "one plane");
+    assert_fails(ptie_rig_calibrate(found, &rig, file("cam_target.mraw"), NULL), PTIE_EINVAL,
+                 "one plane");
     assert_ok(ptie_rig_check(&rig, file("cam.mraw"), NULL, NULL, &report));
-    for (int32_t i = 0; i < report.count; i++) assert_true(strcmp(report.finding[i].name, "registration") != 0);
-    assert_fails(ptie_rig_check(&rig, file("none.mraw"), NULL, NULL, &report), PTIE_EIO, "none.mraw");
-    assert_fails(ptie_rig_check(&rig, NULL, NULL, NULL, &report), PTIE_EINVAL, "recording is missing");
+    for (int32_t i = 0; i < report.count; i++)
+        assert_true(strcmp(report.finding[i].name, "registration") != 0);
+    assert_fails(ptie_rig_check(&rig, file("none.mraw"), NULL, NULL, &report), PTIE_EIO,
+                 "none.mraw");
+    assert_fails(ptie_rig_check(&rig, NULL, NULL, NULL, &report), PTIE_EINVAL,
+                 "recording is missing");
 }
 
 int main(void) {

@@ -12,7 +12,8 @@
 
 enum { WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT, W = WIDTH / 2, H = HEIGHT / 2 };
 
-/* Light without flow, its change by the flow, and the dark level: all different from pixel to pixel. */
+/* Light without flow, its change by the flow, and the dark level: all different from pixel to
+ * pixel. */
 static double still_light(int y, int x) {
     return 1000 + 200 * cos(0.3 * x) + 100 * sin(0.2 * y);
 }
@@ -29,7 +30,8 @@ static void write_frames(const char *name, const float *frames, int count, int w
     ptie_writer *writer;
     const ptie_recording_info info = {.width_px = width, .height_px = height, .frames = count};
     assert_ok(ptie_writer_create(&writer, support_temporary(name), "intensity", &info, true));
-    for (int t = 0; t < count; t++) assert_ok(ptie_writer_append(writer, frames + (ptrdiff_t)t * width * height));
+    for (int t = 0; t < count; t++)
+        assert_ok(ptie_writer_append(writer, frames + (ptrdiff_t)t * width * height));
     assert_ok(ptie_writer_close(writer));
 }
 
@@ -37,7 +39,8 @@ static void write_frames(const char *name, const float *frames, int count, int w
 static void write_stills(void) {
     static float dark[2][PIXELS], still[2][PIXELS];
     for (int i = 0; i < PIXELS; i++) {
-        const double d = dark_level(i / WIDTH, i % WIDTH), s = d + still_light(i / WIDTH, i % WIDTH);
+        const double d = dark_level(i / WIDTH, i % WIDTH),
+                     s = d + still_light(i / WIDTH, i % WIDTH);
         dark[0][i] = (float)(d - 1), dark[1][i] = (float)(d + 1);
         still[0][i] = (float)(s - 1), still[1][i] = (float)(s + 1);
     }
@@ -63,7 +66,8 @@ static ptie_rig rig_of(ptie_layout layout) {
     rig.demosaic = PTIE_DEMOSAIC_NONE;
     rig.angle_deg[1] = 45, rig.angle_deg[2] = 135, rig.angle_deg[3] = 90;
     rig.plane[PTIE_PLUS].mix[0] = 1;
-    rig.plane[PTIE_MINUS].mix[layout == PTIE_LAYOUT_MOSAIC || layout == PTIE_LAYOUT_QUADRANTS ? 3 : 1] = 1;
+    rig.plane[PTIE_MINUS]
+        .mix[layout == PTIE_LAYOUT_MOSAIC || layout == PTIE_LAYOUT_QUADRANTS ? 3 : 1] = 1;
     rig.flat_field = rig.match_gain = false;
     return rig;
 }
@@ -164,7 +168,8 @@ static void flat_fields_and_gains(void **state) {
     read_map(minus, "minus", 0, WIDTH, H);
     /* Frame over reference times the reference's mean: the light's structure is gone. */
     double mean[2] = {0};
-    for (int i = 0; i < PIXELS; i++) mean[i / WIDTH / H] += still_light(i / WIDTH, i % WIDTH) / (WIDTH * H);
+    for (int i = 0; i < PIXELS; i++)
+        mean[i / WIDTH / H] += still_light(i / WIDTH, i % WIDTH) / (WIDTH * H);
     for (int i = 0; i < WIDTH * H; i++) {
         assert_near((double)plus[i], flow(i / WIDTH, i % WIDTH) * mean[0], 1e-3);
         assert_near((double)minus[i], flow(i / WIDTH + H, i % WIDTH) * mean[1], 1e-3);
@@ -179,7 +184,8 @@ static void flat_fields_and_gains(void **state) {
     assert_near(mean_of(plus, WIDTH * H) / mean_of(minus, WIDTH * H), 1, 1e-6);
 }
 
-/* A plane that lies 3 pixels to the right and 2 up is found there: whole pixels are not interpolated. */
+/* A plane that lies 3 pixels to the right and 2 up is found there: whole pixels are not
+ * interpolated. */
 static void registration_moves_planes_to_the_grid(void **state) {
     (void)state;
     enum { DX = 3, DY = -2 };
@@ -197,7 +203,8 @@ static void registration_moves_planes_to_the_grid(void **state) {
     read_map(minus, "minus", 0, W, HEIGHT);
     for (int y = -DY; y < HEIGHT; y++)
         for (int x = 0; x < W - DX; x++)
-            assert_near((double)minus[y * W + x], flow(y, x), 2e-6); /* rounding of the splines' filter, near 1 */
+            assert_near((double)minus[y * W + x], flow(y, x),
+                        2e-6); /* rounding of the splines' filter, near 1 */
     write_flow();
 }
 
@@ -259,10 +266,12 @@ static void what_does_not_fit_is_refused(void **state) {
     ptie_rig rig = rig_of(PTIE_LAYOUT_TOP_BOTTOM);
     write_frames("small.npy", small, 1, 4, 4);
     snprintf(rig.dark, sizeof rig.dark, "%s", support_temporary("small.npy"));
-    assert_fails(prepare(&rig, PTIE_STEP_MASK), PTIE_ESIZE, "small.npy: frame size differs from the recording's");
+    assert_fails(prepare(&rig, PTIE_STEP_MASK), PTIE_ESIZE,
+                 "small.npy: frame size differs from the recording's");
     rig.dark[0] = 0;
     snprintf(rig.mask, sizeof rig.mask, "%s", support_temporary("small.npy"));
-    assert_fails(prepare(&rig, PTIE_STEP_MASK), PTIE_ESIZE, "small.npy: mask differs from the planes in size");
+    assert_fails(prepare(&rig, PTIE_STEP_MASK), PTIE_ESIZE,
+                 "small.npy: mask differs from the planes in size");
     snprintf(rig.mask, sizeof rig.mask, "%s", support_temporary("none.npy"));
     assert_fails(prepare(&rig, PTIE_STEP_MASK), PTIE_EIO, "none.npy");
     rig.mask[0] = 0;

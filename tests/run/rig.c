@@ -27,18 +27,20 @@ static ptie_rig load(const char *text) {
 
 static void a_full_rig_is_read(void **state) {
     (void)state;
-    const ptie_rig rig =
-        load("[optics]\nwavelength = 633 nm\npixel = 20 um ; on the sensor\nmagnification = 0.5\n"
-             "[planes]\nset = reference\nlayout = mosaic\nmosaic = 90 45 135 0\nroi_x = 1\nroi_y = 3\n"
-             "plus = 0.98*45 + 0.02*135\n"
-             "[plus]\ndefocus = 7 mm\ngain = 1.1\n"
-             "[recording]\nframe_rate = 25 kHz\nreference = noflow.png\ndark = /d/dark.tif\nstill_frames = 3:50\n"
-             "[camera]\nsaturation = 4095\nelectrons_per_count = 2.5\nread_noise = 24\n"
-             "[preprocess]\ndemosaic = fourier\nflat_field = no\nmatch_gain = no\nmask_below = 10 %\n"
-             "background = zernike\n"
-             "[flow]\npolarity = negative\nstill = 0,0,40,30\n"
-             "[solver]\nbinning = 4\nboundary = periodic\nmethod = us-tie\niterations = 7\ncutoff = 3 cm\n"
-             "zero_border = no\n");
+    const ptie_rig rig = load(
+        "[optics]\nwavelength = 633 nm\npixel = 20 um ; on the sensor\nmagnification = 0.5\n"
+        "[planes]\nset = reference\nlayout = mosaic\nmosaic = 90 45 135 0\nroi_x = 1\nroi_y = 3\n"
+        "plus = 0.98*45 + 0.02*135\n"
+        "[plus]\ndefocus = 7 mm\ngain = 1.1\n"
+        "[recording]\nframe_rate = 25 kHz\nreference = noflow.png\ndark = "
+        "/d/dark.tif\nstill_frames = 3:50\n"
+        "[camera]\nsaturation = 4095\nelectrons_per_count = 2.5\nread_noise = 24\n"
+        "[preprocess]\ndemosaic = fourier\nflat_field = no\nmatch_gain = no\nmask_below = 10 %\n"
+        "background = zernike\n"
+        "[flow]\npolarity = negative\nstill = 0,0,40,30\n"
+        "[solver]\nbinning = 4\nboundary = periodic\nmethod = us-tie\niterations = 7\ncutoff = 3 "
+        "cm\n"
+        "zero_border = no\n");
     const ptie_plane *plus = &rig.plane[PTIE_PLUS];
     assert_true(rig.wavelength_m == 633e-9 && rig.pixel_m == 40e-6); /* at the object */
     assert_true(rig.one_plane && plus->used && !rig.plane[PTIE_MINUS].used);
@@ -50,7 +52,8 @@ static void a_full_rig_is_read(void **state) {
     assert_string_equal(rig.reference, support_temporary("noflow.png")); /* relative to the rig */
     assert_string_equal(rig.dark, "/d/dark.tif");
     assert_true(rig.still_first == 3 && rig.still_end == 50);
-    assert_true(rig.saturation_counts == 4095 && rig.electrons_per_count == 2.5 && rig.read_noise_electrons == 24);
+    assert_true(rig.saturation_counts == 4095 && rig.electrons_per_count == 2.5 &&
+                rig.read_noise_electrons == 24);
     assert_int_equal(rig.demosaic, PTIE_DEMOSAIC_FOURIER);
     assert_false(rig.flat_field || rig.match_gain || rig.zero_border);
     assert_true(rig.mask_below == 0.1);
@@ -86,11 +89,14 @@ static void defaults_and_unequal_steps(void **state) {
     assert_true(rig.plane[PTIE_MINUS].gain == 1 && rig.plane[PTIE_MINUS].magnification == 1);
     rig = load(OPTICS "[planes]\nset = five\n[plus2]\ndefocus = 30 mm\n");
     const double z_m[PTIE_ROLES] = {10e-3, -10e-3, 0, 30e-3, -20e-3};
-    for (int i = 0; i < PTIE_ROLES; i++) assert_true(rig.plane[i].used && rig.plane[i].defocus_m == z_m[i]);
-    rig = load(OPTICS "[minus]\nshift_x = 0.25\nshift_y = -1.5\nmagnification = 1.002\nrotation = 0.5 mrad\n");
+    for (int i = 0; i < PTIE_ROLES; i++)
+        assert_true(rig.plane[i].used && rig.plane[i].defocus_m == z_m[i]);
+    rig = load(
+        OPTICS
+        "[minus]\nshift_x = 0.25\nshift_y = -1.5\nmagnification = 1.002\nrotation = 0.5 mrad\n");
     const ptie_plane *minus = &rig.plane[PTIE_MINUS];
-    assert_true(minus->shift_x_px == 0.25 && minus->shift_y_px == -1.5 && minus->magnification == 1.002 &&
-                minus->rotation_rad == 5e-4);
+    assert_true(minus->shift_x_px == 0.25 && minus->shift_y_px == -1.5 &&
+                minus->magnification == 1.002 && minus->rotation_rad == 5e-4);
 }
 
 /* Every layout's channels, by name; printed and read back they are the same rig, byte by byte. */
@@ -102,12 +108,24 @@ static void every_layout_prints_as_it_reads(void **state) {
     } cases[] = {
         {OPTICS "[planes]\nplus = /entry/data/plus\nminus = /entry/data/minus\n", {0}, {0}},
         {MOSAIC "plus = 0\nminus = 90\n", {1, 0, 0, 0}, {0, 0, 0, 1}},
-        {MOSAIC "plus = 0.5*0+0.5*45\nminus = -0.02*135 + 1.02 * 90\n", {.5, .5, 0, 0}, {0, 0, -.02, 1.02}},
+        {MOSAIC "plus = 0.5*0+0.5*45\nminus = -0.02*135 + 1.02 * 90\n",
+         {.5, .5, 0, 0},
+         {0, 0, -.02, 1.02}},
         {OPTICS "[planes]\nlayout = side-by-side\nplus = right\nminus = left\n", {0, 1}, {1, 0}},
-        {OPTICS "[planes]\nlayout = top-bottom\nplus = top\nminus = 2*bottom - top\n", {1, 0}, {-1, 2}},
-        {OPTICS "[planes]\nlayout = quadrants\nplus = tl\nminus = br\n", {1, 0, 0, 0}, {0, 0, 0, 1}},
-        {OPTICS "[planes]\nset = triple\n[minus]\nshift_x = 0.1\ngain = 0.9\n[zero]\nrotation = 1 deg\n", {0}, {0}},
-        {OPTICS "[planes]\nset = reference\n[recording]\nstill_frames = 0:9\n[flow]\nstill = 1,2,3,4\n", {0}, {0}},
+        {OPTICS "[planes]\nlayout = top-bottom\nplus = top\nminus = 2*bottom - top\n",
+         {1, 0},
+         {-1, 2}},
+        {OPTICS "[planes]\nlayout = quadrants\nplus = tl\nminus = br\n",
+         {1, 0, 0, 0},
+         {0, 0, 0, 1}},
+        {OPTICS
+         "[planes]\nset = triple\n[minus]\nshift_x = 0.1\ngain = 0.9\n[zero]\nrotation = 1 deg\n",
+         {0},
+         {0}},
+        {OPTICS
+         "[planes]\nset = reference\n[recording]\nstill_frames = 0:9\n[flow]\nstill = 1,2,3,4\n",
+         {0},
+         {0}},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         ptie_rig rig = load(cases[i].text);
@@ -133,16 +151,20 @@ static void bad_rigs_get_one_line(void **state) {
         ptie_status status;
         const char *message;
     } cases[] = {
-        {"[optics]\npixel = 20 um\ndefocus = 1 mm\n", PTIE_EINVAL, "lab.ini: missing key 'wavelength' in [optics]"},
+        {"[optics]\npixel = 20 um\ndefocus = 1 mm\n", PTIE_EINVAL,
+         "lab.ini: missing key 'wavelength' in [optics]"},
         {"[optics]\nwavelength = 532 nm\npixel = 20 um\n", PTIE_EINVAL, "missing key 'defocus'"},
         {"[optics]\nwavelength = 532\n", PTIE_EFORMAT,
          "lab.ini:2: wavelength: expected a length such as 532 nm or 10 mm, found '532'"},
-        {"[planes]\nset = refrence\n", PTIE_ENAME, "lab.ini:2: set: unknown value 'refrence' (did you mean 'reference'?)"},
+        {"[planes]\nset = refrence\n", PTIE_ENAME,
+         "lab.ini:2: set: unknown value 'refrence' (did you mean 'reference'?)"},
         {"[planes]\nlayout = mosiac\n", PTIE_ENAME, "did you mean 'mosaic'?"},
         {"[solvr]\nbinning = 2\n", PTIE_ENAME, "did you mean [solver]?"},
-        {"[minus]\nshiftx = 2\n", PTIE_ENAME, "unknown key 'shiftx' in [minus] (did you mean 'shift_x'?)"},
+        {"[minus]\nshiftx = 2\n", PTIE_ENAME,
+         "unknown key 'shiftx' in [minus] (did you mean 'shift_x'?)"},
         {"[minus]\nrotation = 2\n", PTIE_EFORMAT, "rotation: expected"},
-        {"[planes]\nmosaic = soni\n", PTIE_EFORMAT, "lab.ini:2: mosaic: expected sony, crysta or four different angles"},
+        {"[planes]\nmosaic = soni\n", PTIE_EFORMAT,
+         "lab.ini:2: mosaic: expected sony, crysta or four different angles"},
         {"[planes]\nmosaic = 0 45 90 45\n", PTIE_EFORMAT, "four different angles"},
         {"[planes]\nmosaic = 0 45 90 180\n", PTIE_EFORMAT, "four different angles"},
         {"[planes]\nmosaic = 0 45 90 135 0\n", PTIE_EFORMAT, "four different angles"},
@@ -151,19 +173,23 @@ static void bad_rigs_get_one_line(void **state) {
         {"[flow]\nstill = 1,2,0,4\n", PTIE_EFORMAT, "a rectangle x,y,width,height"},
         {MOSAIC "plus = 0\n", PTIE_EINVAL, "missing key 'minus' in [planes]"},
         {MOSAIC "plus = 0\nminus = left\n", PTIE_EFORMAT,
-         "lab.ini: [planes] minus: expected channels of the layout such as '0' or '0.98*0 + 0.02*45', found 'left'"},
+         "lab.ini: [planes] minus: expected channels of the layout such as '0' or '0.98*0 + "
+         "0.02*45', found 'left'"},
         {MOSAIC "plus = 0\nminus = 0.5*\n", PTIE_EFORMAT, "found '0.5*'"},
         {MOSAIC "plus = 0\nminus = 45 90\n", PTIE_EFORMAT, "found '45 90'"},
         {MOSAIC "plus = 0\nminus = 45 - 45\n", PTIE_EFORMAT, "found '45 - 45'"},
-        {OPTICS "[planes]\nlayout = mosaic\nplus = 0\nminus = 90\n", PTIE_EINVAL, "missing key 'mosaic'"},
-        {OPTICS "[planes]\nplus = entry/data\n", PTIE_EFORMAT, "expected a data set such as /entry/data/plus"},
+        {OPTICS "[planes]\nlayout = mosaic\nplus = 0\nminus = 90\n", PTIE_EINVAL,
+         "missing key 'mosaic'"},
+        {OPTICS "[planes]\nplus = entry/data\n", PTIE_EFORMAT,
+         "expected a data set such as /entry/data/plus"},
         {OPTICS "[planes]\nzero = /entry/data\n", PTIE_EINVAL, "zero has no place in set 'pair'"},
         {OPTICS "[minus]\ndefocus = 10 mm\n", PTIE_EINVAL, "'plus' and 'minus' are one plane"},
         {OPTICS "[minus]\ndefocus = 11 mm\n", PTIE_EINVAL, "'minus' must lie below 'plus'"},
     };
     ptie_rig rig = {.polarity = 7};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-        assert_fails(ptie_rig_load(&rig, write_rig(cases[i].text)), cases[i].status, cases[i].message);
+        assert_fails(ptie_rig_load(&rig, write_rig(cases[i].text)), cases[i].status,
+                     cases[i].message);
     assert_fails(ptie_rig_load(&rig, support_temporary("none.ini")), PTIE_EIO, "No such file");
     assert_int_equal(rig.polarity, 7); /* untouched by every failure */
 }
@@ -177,25 +203,30 @@ static char *edit(const char *from, const char *section, const char *key, const 
     return (char *)support_read(to, &bytes);
 }
 
-/* A key is replaced, uncovered, added to its section, or brings its section along; all else stays. */
+/* A key is replaced, uncovered, added to its section, or brings its section along; all else stays.
+ */
 static void editing_keeps_the_rest(void **state) {
     (void)state;
     static const struct {
         const char *before, *key, *after;
     } cases[] = {
-        {"[minus]\ngain = 1     ; measured\n; end\n", "gain", "[minus]\ngain = 1.25  ; measured\n; end\n"},
+        {"[minus]\ngain = 1     ; measured\n; end\n", "gain",
+         "[minus]\ngain = 1.25  ; measured\n; end\n"},
         {"[minus]\r\n  gain:1 ; x\r\n", "gain", "[minus]\r\n  gain:1.25 ; x\r\n"},
         {"[minus]\n; gain = 1            ; of it\nshift_x = 1\n", "gain",
          "[minus]\ngain = 1.25           ; of it\nshift_x = 1\n"},
-        {"[minus]\nshift_x = 1\n\n[flow]\n", "gain", "[minus]\nshift_x = 1\ngain = 1.25\n\n[flow]\n"},
+        {"[minus]\nshift_x = 1\n\n[flow]\n", "gain",
+         "[minus]\nshift_x = 1\ngain = 1.25\n\n[flow]\n"},
         {"[flow]\npolarity = auto", "gain", "[flow]\npolarity = auto\n\n[minus]\ngain = 1.25\n"},
         {"[plus]\ngain = 3\n[minus]\n", "gain", "[plus]\ngain = 3\n[minus]\ngain = 1.25\n"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char before[512], after[512];
-        snprintf(before, sizeof before, "[optics]\nwavelength = 532 nm\npixel = 20 um\ndefocus = 1 mm\n%s",
+        snprintf(before, sizeof before,
+                 "[optics]\nwavelength = 532 nm\npixel = 20 um\ndefocus = 1 mm\n%s",
                  cases[i].before);
-        snprintf(after, sizeof after, "[optics]\nwavelength = 532 nm\npixel = 20 um\ndefocus = 1 mm\n%s",
+        snprintf(after, sizeof after,
+                 "[optics]\nwavelength = 532 nm\npixel = 20 um\ndefocus = 1 mm\n%s",
                  cases[i].after);
         char *found = edit(before, "minus", cases[i].key, "1.25");
         assert_string_equal(found, after);
@@ -220,7 +251,8 @@ static void a_new_rig_has_every_key_and_loads(void **state) {
     assert_fails(ptie_rig_edit(support_temporary("bad.ini"), NULL, &bad, 1, true), PTIE_EFORMAT,
                  "bad.ini:6: pixel: expected a length");
     assert_false(support_exists(support_temporary("bad.ini")));
-    assert_fails(ptie_rig_edit(support_temporary("edited.ini"), NULL, NULL, 0, false), PTIE_EEXIST, "edited.ini");
+    assert_fails(ptie_rig_edit(support_temporary("edited.ini"), NULL, NULL, 0, false), PTIE_EEXIST,
+                 "edited.ini");
 }
 
 int main(void) {
