@@ -17,7 +17,7 @@ static const char notes[] =
 static const char *const verdicts[] = {"ok", "warn", "FAIL"};
 
 typedef struct settings {
-    const char *rig_path, *recording, *plane[PTIE_ROLES], *target;
+    const char *rig_path, *recording, *plane[PTIE_ROLES], *target, *reference;
     bool json;
 } settings;
 
@@ -25,6 +25,8 @@ static int parse(settings *s, int argc, char **argv) {
     const option options[] = {
         {0, "target", OPTION_TEXT, &s->target, "FILE",
          .help = "recording of a target in the object's plane: measures registration"},
+        {0, "reference", OPTION_TEXT, &s->reference, "FILE",
+         .help = "no-flow recording, instead of the rig's"},
         PLANE_OPTIONS(s->plane),
         {0, "json", OPTION_FLAG, &s->json, .help = "findings as JSON instead of lines"},
     };
@@ -80,6 +82,7 @@ int rig_check(int argc, char **argv) {
     if (code != GO_ON) return code;
     ptie_rig_init(&rig);
     ptie_status status = ptie_rig_load(&rig, s.rig_path);
+    if (s.reference) snprintf(rig.reference, sizeof rig.reference, "%s", s.reference);
     if (status == PTIE_OK) status = ptie_rig_check(&rig, s.recording, s.plane, s.target, &report);
     if (status != PTIE_OK) return failed(status);
     if (s.json)
