@@ -91,7 +91,9 @@ static ptie_status lock_part(ptie_output_file *file, int create) {
 
 static ptie_status empty_part(const ptie_output_file *file) {
     if (ftruncate(file->lock, 0) == 0 || errno == EINVAL /* a link to a device */) return PTIE_OK;
-    return system_failure(file->path, "cannot create");
+    const ptie_status status = system_failure(file->path, "cannot create");
+    unlink(file->part);
+    return status;
 }
 
 static ptie_status name_and_lock(ptie_output_file *file, const char *path, bool overwrite, int create) {

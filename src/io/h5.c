@@ -3,6 +3,7 @@
 #include "io/h5.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <pthread.h>
 #include <string.h>
 
@@ -68,6 +69,7 @@ static herr_t take_reason(unsigned depth, const H5E_error2_t *entry, void *data)
 static ptie_status h5_failure(const ptie_h5 *h5, ptie_status status, const char *what,
                               const char *object) {
     char reason[REASON_BYTES] = "no reason given";
+    if (h5->failure == ENOMEM) status = PTIE_ENOMEM;
     if (h5->failure)
         snprintf(reason, sizeof reason, "%s", strerror(h5->failure));
     else

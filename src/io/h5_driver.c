@@ -37,8 +37,12 @@ static H5FD_t *driver_open(const char *path, unsigned flags, hid_t access, haddr
     (void)largest;
     const settings *info = H5Pget_driver_info(access);
     int create = (flags & H5F_ACC_CREAT ? O_CREAT : 0) | (flags & H5F_ACC_TRUNC ? O_TRUNC : 0);
-    driver_file *file = info ? ptie_alloc(1, sizeof *file) : NULL;
-    if (!file) return NULL;
+    if (!info) return NULL;
+    driver_file *file = ptie_alloc(1, sizeof *file);
+    if (!file) {
+        *info->failure = ENOMEM;
+        return NULL;
+    }
     file->failure = info->failure;
     file->descriptor = open(path, O_RDWR | O_CLOEXEC | create, 0666);
     if (file->descriptor < 0) {

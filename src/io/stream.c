@@ -17,6 +17,11 @@ ptie_status ptie_stream_check(const ptie_stream *stream) {
     return PTIE_FAIL(PTIE_EIO, "%s: cannot write: %s", stream->file.path, strerror(errno));
 }
 
+ptie_status ptie_stream_restart(FILE *out, const char *path) {
+    if (fseeko(out, 0, SEEK_SET) == 0 && !ferror(out)) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EIO, "%s: cannot write: %s", path, strerror(errno));
+}
+
 ptie_status ptie_stream_complete(ptie_stream *stream) {
     ptie_status status = ptie_close_written(stream->out, stream->file.path);
     stream->out = NULL;

@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "io/endian.h"
+#include "io/stream.h"
 
 #define DIRECTORY_BYTES 512 /* more than one takes */
 
@@ -121,8 +122,8 @@ ptie_status ptie_tiff_write_tail(FILE *out, const ptie_writer_job *job, uint64_t
     const uint64_t first = l.resolution_at + 8;
     uint64_t at = first;
     for (uint64_t frame = 0; frame < l.frames; frame++) at += write_directory(&l, frame, at);
-    rewind(out);
-    write_header(&l, first);
     ptie_text_free(&text);
+    PTIE_TRY(ptie_stream_restart(out, job->path));
+    write_header(&l, first);
     return PTIE_OK;
 }

@@ -59,9 +59,11 @@ static ptie_status npy_append(void *state, const float *frame) {
 
 static ptie_status npy_complete(void *state, int64_t frames) {
     npy_output *npy = state;
-    rewind(npy->stream.out);
-    write_header(npy, frames);
-    ptie_status status = ptie_stream_complete(&npy->stream);
+    ptie_status status = ptie_stream_restart(npy->stream.out, npy->job->path);
+    if (status == PTIE_OK) {
+        write_header(npy, frames);
+        status = ptie_stream_complete(&npy->stream);
+    }
     npy_discard(npy); /* what is left of it */
     return status;
 }
