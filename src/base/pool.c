@@ -96,9 +96,10 @@ ptie_status ptie_pool_create(ptie_pool **out, int32_t threads) {
     for (int32_t i = 1; i < pool->threads; i++) {
         int error = pthread_create(&pool->workers[i].thread, NULL, worker_main, &pool->workers[i]);
         if (error) {
+            const ptie_status status = PTIE_FAIL(PTIE_ENOMEM, "thread pool: cannot start thread %d of %d: %s",
+                                                 i + 1, pool->threads, strerror(error));
             ptie_pool_free(pool);
-            return PTIE_FAIL(PTIE_ENOMEM, "thread pool: cannot start thread %d of %d: %s", i + 1,
-                             pool->threads, strerror(error));
+            return status;
         }
         pool->started++;
     }
