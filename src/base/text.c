@@ -129,7 +129,9 @@ const char *ptie_parse_quantity(const char *text, ptie_quantity quantity, double
         const unit *u = &units[i];
         if (u->quantity != quantity || strlen(u->name) != length) continue;
         if (memcmp(u->name, end, length) != 0) continue;
-        *value = number * u->factor / u->divisor;
+        const double converted = number * u->factor / u->divisor;
+        if (!isfinite(converted)) break; /* "1e308 deg" */
+        *value = converted;
         return NULL;
     }
     return expected[quantity];
