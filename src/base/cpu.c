@@ -19,7 +19,7 @@ const char *ptie_cpu_name(ptie_cpu_level level) {
 }
 
 ptie_cpu_level ptie_cpu_detect(void) {
-#if defined(__x86_64__) && defined(__GNUC__)
+#ifdef PTIE_VEC_LEVELS
     /* The compiler's run time also asks XGETBV whether the system saves the wide registers. */
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&

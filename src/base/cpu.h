@@ -14,7 +14,7 @@ typedef enum ptie_cpu_level {
     PTIE_CPU_LEVELS = 3
 } ptie_cpu_level;
 
-/* Highest level the processor and the operating system support. */
+/* Highest level that the processor and the operating system support and this build has kernels for. */
 ptie_cpu_level ptie_cpu_detect(void);
 /* Whether it also computes with halves (AVX512-FP16, beside PTIE_CPU_AVX512). */
 bool ptie_cpu_has_half(void);

@@ -25,7 +25,7 @@ ptie_status ptie_engine_start(ptie_engine *engine, int32_t threads, const char *
     *engine = (ptie_engine){0};
     PTIE_TRY(ptie_cpu_choose(&engine->level, cpu));
     engine->kernels = ptie_kernels_of(engine->level);
-    assert(engine->kernels); /* where higher levels can be detected, they are built */
+    assert(engine->kernels); /* only levels that are built are detected */
     return ptie_pool_create(&engine->pool, threads);
 }
 
