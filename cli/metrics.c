@@ -69,17 +69,17 @@ static int parse(settings *s, int argc, char **argv) {
     return check_figure(s->figure, s->force);
 }
 
-static ptie_status measure(series_set *set, const settings *s) {
+static int measure(series_set *set, const settings *s) {
     progress_bar progress;
     progress_start(&progress, s->progress, "metrics", "frames");
-    ptie_status status = label_regions(set, s->jet, s->background);
+    ptie_status status = PTIE_OK;
     for (int64_t t = 0; t < set->frames && status == PTIE_OK; t++) {
         status = measure_frame(set, t);
         if (progress_report(&progress, (uint64_t)t + 1, (uint64_t)set->frames, NULL))
             status = PTIE_ECANCELLED;
     }
     progress_end(&progress);
-    return status;
+    return status == PTIE_OK ? DONE : failed(status);
 }
 
 static void print_frames_json(const series_set *set) {
@@ -159,9 +159,9 @@ int metrics_command(int argc, char **argv) {
     series_set set = {.count = 0};
     int code = parse(&s, argc, argv);
     if (code == GO_ON) code = open_series(&set, &s.files, s.truth);
+    if (code == GO_ON) code = label_regions(&set, s.jet, s.background);
     if (code == GO_ON) {
-        ptie_status status = measure(&set, &s);
-        code = status == PTIE_OK ? DONE : failed(status);
+        code = measure(&set, &s);
         if (code == DONE && s.figure) code = draw(&set, &s);
         if (code == DONE) print_results(&set, s.json);
     }

@@ -98,17 +98,28 @@ int open_series(series_set *set, const operand_list *files, const char *truth) {
     return code == GO_ON ? allocate(set) : code;
 }
 
-ptie_status label_regions(series_set *set, ptie_rect jet, ptie_rect background) {
-    if (jet.width_px > 0)
-        return ptie_regions_from_rects(set->labels, set->width, set->height, jet, background);
-    float *mean = set->true_map; /* not in use yet */
-    ptie_recording *last = set->series[set->count - (set->truth ? 2 : 1)].recording;
+/* The mean over frames of the last recording that is not the truth. */
+static ptie_status take_mean(series_set *set, const series *last, float *mean) {
     for (int64_t t = 0; t < set->frames; t++) {
-        ptie_status status = ptie_recording_read(last, t, set->map);
+        ptie_status status = ptie_recording_read(last->recording, t, set->map);
         if (status != PTIE_OK) return status;
         for (size_t i = 0; i < set->pixels; i++) mean[i] += set->map[i] / (float)set->frames;
     }
-    return ptie_regions_propose(set->labels, mean, set->width, set->height);
+    return PTIE_OK;
+}
+
+int label_regions(series_set *set, ptie_rect jet, ptie_rect background) {
+    if (jet.width_px > 0) {
+        ptie_status status = ptie_regions_from_rects(set->labels, set->width, set->height, jet, background);
+        return status == PTIE_OK ? GO_ON : failed(status);
+    }
+    const series *last = &set->series[set->count - (set->truth ? 2 : 1)];
+    float *mean = set->true_map; /* not in use yet */
+    ptie_status status = take_mean(set, last, mean);
+    if (status != PTIE_OK) return failed(status);
+    if (ptie_regions_propose(set->labels, mean, set->width, set->height) == PTIE_OK) return GO_ON;
+    say("ptie: %s: mean %s", last->path, ptie_last_error()); /* "map: is constant (...)" */
+    return FAILED;
 }
 
 /* A TIE phase has no mean, so none is compared. */

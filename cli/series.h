@@ -33,8 +33,8 @@ typedef struct series_set {
    message. */
 int open_series(series_set *set, const operand_list *files, const char *truth);
 /* Labels the regions: the rectangles, or, if `jet` is empty, what the mean of the last map
- * proposes. */
-ptie_status label_regions(series_set *set, ptie_rect jet, ptie_rect background);
+ * proposes.  GO_ON, or the exit code after a message. */
+int label_regions(series_set *set, ptie_rect jet, ptie_rect background);
 /* Measures frame t of every series. */
 ptie_status measure_frame(series_set *set, int64_t t);
 /* Mean and standard deviation over frames. */

@@ -202,3 +202,8 @@ Regions outside of the frame
   $ ptie metrics phase.npy --jet 0,0,0,4 --background 0,10,4,4
   ! ptie: metrics: --jet and --background belong together
   [2]
+
+A map without a flow has no regions to propose
+  $ $TESTS/npy flat.npy 2 8 8 flat; ptie metrics flat.npy
+  ! ptie: flat.npy: mean map: is constant (expected a flow, found 1 everywhere)
+  [1]
