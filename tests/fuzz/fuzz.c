@@ -8,6 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "io/input.h"
+#include "io/reader.h"
 #include "io/recording.h"
 #include "support/support.h"
 
@@ -88,9 +90,14 @@ static void read_frames(ptie_recording *recording, const char *where) {
     free(frame);
 }
 
+static bool is_hdf5(const char *path) {
+    unsigned char head[PTIE_HEAD_BYTES];
+    return ptie_input_head(path, head, sizeof head) == PTIE_OK && ptie_read_h5.probe(head);
+}
+
 void fuzz_recording(const char *path, const char *where) {
     ptie_recording *recording;
-    if (ptie_io_has_data_sets(path)) return; /* HDF5, see docs/formats.md */
+    if (is_hdf5(path)) return; /* docs/formats.md says why */
     ptie_status status = ptie_io_open(&recording, path);
     fuzz_status(status, where);
     FUZZ_CHECK((status == PTIE_OK) == (recording != NULL));
@@ -98,4 +105,17 @@ void fuzz_recording(const char *path, const char *where) {
     check_info(ptie_io_info(recording));
     read_frames(recording, where);
     ptie_io_close(recording);
+}
+
+const char *fuzz_frames(const char *name, const uint8_t size[2]) {
+    static unsigned char frames[1 << 16];
+    if (!frames[1])
+        for (size_t i = 0; i < sizeof frames; i++) frames[i] = (unsigned char)(i * 37 + i / 256);
+    return fuzz_file(name, frames, (size_t)(size[0] | size[1] << 8));
+}
+
+void fuzz_pair(const char *frames, const char *header) {
+    char stem[1024];
+    snprintf(stem, sizeof stem, "%.*s.", (int)(strrchr(header, '.') - header), header);
+    fuzz_recording(frames, stem);
 }

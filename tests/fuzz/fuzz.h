@@ -31,4 +31,9 @@ void fuzz_status(ptie_status status, const char *where);
    failures name, the path or the folder of a sequence. */
 void fuzz_recording(const char *path, const char *where);
 
+/* A file of as many bytes as size[0] + 256 size[1] says: frames for a header beside it. */
+const char *fuzz_frames(const char *name, const uint8_t size[2]);
+/* A recording in two files of one stem, which failures name. */
+void fuzz_pair(const char *frames, const char *header);
+
 #endif

@@ -14,8 +14,11 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 GOLDEN = ROOT / "tests/golden"
 # Formats by the endings of their files; a folder of inputs that are kept is named like its target.
-ENDINGS = {"npy": [".npy"], "png": [".png"], "tiff": [".tif"]}
-KEYS = {"rig": "src/run/rig.c", "preset": "src/train/preset.c"}  # tables of words
+ENDINGS = {"npy": [".npy"], "png": [".png"], "tiff": [".tif"], "cine": [".cine"], "mat": [".mat"]}
+# Headers with their frames beside them: endings of both, and what the target wants before the header.
+PAIRS = {"mraw": [(".cih", ".mraw", b"t"), (".cihx", ".mraw", b"x")],
+         "raw": [(".json", ".raw", b""), (".json", ".f32", b"")]}
+KEYS = {"rig": "src/run/rig_keys.c", "preset": "src/train/preset.c"}  # tables of words
 LARGEST = 16384  # bytes; larger inputs only slow the search down
 
 
@@ -41,9 +44,13 @@ def smallest_model():
 
 def seeds(target):
     """Names and contents of a target's seeds."""
-    for path in sorted((GOLDEN / "images").iterdir()):
+    for path in sorted(GOLDEN.glob("[ci]*/*")):
         if path.suffix in ENDINGS.get(target, []):
             yield path.name, path.read_bytes()
+        for header, frames, kind in PAIRS.get(target, []):
+            beside = path.with_suffix(frames)
+            if path.suffix == header and beside.exists():
+                yield path.name, struct.pack("<H", min(beside.stat().st_size, 65535)) + kind + path.read_bytes()
     if target in ("rig", "preset"):
         for path in sorted((ROOT / "examples").glob("*.ini")) + [ROOT / "tests/cli/small.ini"]:
             yield path.name, path.read_bytes()
