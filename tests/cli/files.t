@@ -76,7 +76,7 @@ A figure needs an ending that is known
 
 A recording needs an ending that is known
   $ ptie simulate jet -o jet.dat
-  ! ptie: jet.dat: cannot write this kind of file (expected .h5 or .hdf5)
+  ! ptie: jet.dat: cannot write two planes to this kind of file (expected .h5 or .hdf5)
   [2]
   $ ptie reconstruct --rig r.ini jet.h5 -o phase.tif
   ! ptie: reconstruct: --output: expected a name ending in .h5 or .hdf5, found 'phase.tif'
