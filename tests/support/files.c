@@ -57,6 +57,27 @@ void support_check_truncations(const char *path, support_file_fn read, size_t pa
     free(data);
 }
 
+void support_check_changes(const char *path, support_file_fn read) {
+    size_t bytes;
+    unsigned char *data = support_read(path, &bytes);
+    const char *changed = support_temporary("changed");
+    support_write(changed, data, bytes);
+    FILE *file = fopen(changed, "r+b");
+    assert_non_null(file);
+    setbuf(file, NULL);
+    for (size_t i = 0; i < bytes; i++) {
+        const unsigned char values[] = {0, 255, (unsigned char)(data[i] ^ 1), data[i]};
+        for (int k = 0; k < 4; k++) { /* the last one puts it back */
+            assert_int_equal(fseek(file, (long)i, SEEK_SET), 0);
+            assert_int_equal(fwrite(values + k, 1, 1, file), 1);
+            if (read(changed) != PTIE_OK) assert_non_null(strstr(ptie_last_error(), changed));
+        }
+    }
+    fclose(file);
+    remove(changed);
+    free(data);
+}
+
 uint32_t support_crc32(const unsigned char *data, size_t bytes) {
     uint32_t crc = ~0u;
     for (size_t i = 0; i < bytes; i++) {

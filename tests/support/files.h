@@ -19,6 +19,9 @@ void support_check_full_disk(const char *path, support_file_fn write);
  */
 void support_check_truncations(const char *path, support_file_fn read, size_t padding);
 
+/* `read` survives the file at `path` with any one byte 0, 255 or off by one; a failure names the file. */
+void support_check_changes(const char *path, support_file_fn read);
+
 /* The check sum of PNG and zlib, and its byte order there. */
 uint32_t support_crc32(const unsigned char *data, size_t bytes);
 void support_put_be32(unsigned char *bytes, uint32_t value);
