@@ -5,9 +5,9 @@
 #include <stdio.h>
 
 #include "api/params.h"
-#include "run/check.h"
-#include "run/planes.h"
-#include "run/rig.h"
+#include "rig/check.h"
+#include "rig/planes.h"
+#include "rig/rig.h"
 
 void ptie_rig_init(ptie_rig *rig) {
     ptie_rig_defaults(rig);

@@ -8,7 +8,7 @@
 #include "api/params.h"
 #include "base/file.h"
 #include "optics/camera.h"
-#include "run/simulate.h"
+#include "simulate/simulate.h"
 
 #define MOST_FRAMES 100000000
 

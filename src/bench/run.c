@@ -11,8 +11,8 @@
 #include "bench/groups.h"
 #include "bench/network.h"
 #include "nn/nn.h"
-#include "run/rig.h"
-#include "run/simulate.h"
+#include "rig/rig.h"
+#include "simulate/simulate.h"
 #include "run/worker.h"
 
 typedef struct pipeline {

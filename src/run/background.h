@@ -3,7 +3,7 @@
 #ifndef PTIE_RUN_BACKGROUND_H
 #define PTIE_RUN_BACKGROUND_H
 
-#include "run/prepare.h"
+#include "rig/prepare.h"
 #include "run/worker.h"
 
 /* Gives the plan the median phase of the rig's still frames, if it names some: of at most 31 of

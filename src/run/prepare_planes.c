@@ -7,8 +7,8 @@
 #include "base/memory.h"
 #include "io/nexus.h"
 #include "io/recording.h"
-#include "run/prepare.h"
-#include "run/rig.h"
+#include "rig/prepare.h"
+#include "rig/rig.h"
 #include "run/run.h"
 #include "run/stages.h"
 

@@ -8,7 +8,7 @@
 #include "base/clones.h"
 #include "base/memory.h"
 #include "fft/fft.h"
-#include "run/planes.h"
+#include "rig/planes.h"
 #include "tie/derivative.h"
 #include "tie/solver.h"
 

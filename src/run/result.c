@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "base/memory.h"
-#include "run/planes.h"
-#include "run/rig.h"
+#include "rig/planes.h"
+#include "rig/rig.h"
 #include "run/run.h"
 #include "tie/derivative.h"
 #include "tie/solver.h"

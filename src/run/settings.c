@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "nn/nn.h"
-#include "run/rig.h"
+#include "rig/rig.h"
 
 uint64_t ptie_hash(uint64_t hash, const void *data, size_t bytes) {
     const unsigned char *next = data;

@@ -6,7 +6,7 @@
 #include "nn/nn.h"
 #include "prep/prep.h"
 #include "prep/surface.h"
-#include "run/planes.h"
+#include "rig/planes.h"
 #include "tie/solver.h"
 
 struct ptie_frame_plan {

@@ -10,7 +10,7 @@
 #include <ptie/solver.h>
 
 #include "io/h5.h"
-#include "run/rig.h"
+#include "rig/rig.h"
 
 enum { SIDE = 64, FRAMES = 5 };
 

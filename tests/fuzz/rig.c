@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "run/rig.h"
+#include "rig/rig.h"
 
 static char *read_and_print(const void *text, size_t bytes) {
     const char *path = fuzz_file("input.ini", text, bytes);

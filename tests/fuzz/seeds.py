@@ -18,7 +18,7 @@ ENDINGS = {"npy": [".npy"], "png": [".png"], "tiff": [".tif"], "cine": [".cine"]
 # Headers with their frames beside them: endings of both, and what the target wants before the header.
 PAIRS = {"mraw": [(".cih", ".mraw", b"t"), (".cihx", ".mraw", b"x")],
          "raw": [(".json", ".raw", b""), (".json", ".f32", b"")]}
-KEYS = {"rig": "src/run/rig_keys.c", "preset": "src/train/preset.c"}  # tables of words
+KEYS = {"rig": "src/rig/keys.c", "preset": "src/train/preset.c"}  # tables of words
 LARGEST = 16384  # bytes; larger inputs only slow the search down
 
 

@@ -8,7 +8,7 @@
 #include <ptie/prepare.h>
 #include <ptie/recording.h>
 
-#include "run/prepare.h"
+#include "rig/prepare.h"
 
 enum { WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT, W = WIDTH / 2, H = HEIGHT / 2 };
 

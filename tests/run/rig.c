@@ -7,8 +7,8 @@
 #include <ptie/rig.h>
 
 #include "base/memory.h"
-#include "run/rig.h"
-#include "run/rig_keys.h"
+#include "rig/rig.h"
+#include "rig/keys.h"
 
 #define OPTICS "[optics]\nwavelength = 532 nm\npixel = 20 um\ndefocus = 10 mm\n"
 #define MOSAIC OPTICS "[planes]\nlayout = mosaic\nmosaic = crysta\n"
