@@ -32,6 +32,7 @@ typedef struct decoder {
     png_bytep *rows;
     size_t row_bytes, channels;
     bool wide; /* 16 bits */
+    bool short_of_memory;
     char message[128];
 } decoder;
 
@@ -51,8 +52,10 @@ static void on_warning(png_structp png, png_const_charp message) {
 
 /* libpng takes a chunk's word for its size, and only warns when that is above the limit set below. */
 static png_voidp allocate(png_structp png, png_alloc_size_t bytes) {
-    (void)png;
-    return bytes <= MEMORY_LIMIT ? ptie_alloc(bytes, 1) : NULL;
+    decoder *d = png_get_mem_ptr(png);
+    void *memory = bytes <= MEMORY_LIMIT ? ptie_alloc(bytes, 1) : NULL;
+    d->short_of_memory |= !memory && bytes <= MEMORY_LIMIT;
+    return memory;
 }
 
 static void release(png_structp png, png_voidp memory) {
@@ -67,12 +70,19 @@ static void decoder_stop(decoder *d) {
     ptie_free(d->rows);
 }
 
+/* Without memory libpng skips chunks, or takes what follows them for others. */
+static ptie_status short_of_memory(const decoder *d) {
+    return d->short_of_memory ? PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", d->path) : PTIE_OK;
+}
+
 /* libpng fails by jumping; here the jump ends, and no local variable of a step survives it. */
 static ptie_status guarded(decoder *d, void (*step)(decoder *)) {
-    if (setjmp(png_jmpbuf(d->png)))
+    if (setjmp(png_jmpbuf(d->png))) {
+        PTIE_TRY(short_of_memory(d));
         return PTIE_FAIL(PTIE_EFORMAT, "%s: damaged PNG: %s", d->path, d->message);
+    }
     step(d);
-    return PTIE_OK;
+    return short_of_memory(d);
 }
 
 static void read_info(decoder *d) {
@@ -108,7 +118,7 @@ static void read_pixels(decoder *d) {
 static ptie_status decoder_start(decoder *d, const char *path) {
     *d = (decoder){.path = path};
     PTIE_TRY(ptie_input_open(&d->stream, path, &d->file_bytes));
-    d->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, d, on_error, on_warning, NULL, allocate, release);
+    d->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, d, on_error, on_warning, d, allocate, release);
     if (d->png) d->info = png_create_info_struct(d->png);
     if (!d->info) return PTIE_FAIL(PTIE_ENOMEM, "%s: out of memory", path);
     return guarded(d, read_info);
