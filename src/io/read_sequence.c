@@ -92,6 +92,12 @@ static ptie_status add_path(sequence *files, const char *path) {
     return PTIE_OK;
 }
 
+/* NULL at the end with errno 0, or where reading fails. */
+static const struct dirent *next_entry(DIR *entries) {
+    errno = 0;
+    return readdir(entries);
+}
+
 /* Adds the folder's files that fit the pattern, in order; without one, all its images. */
 static ptie_status add_files(sequence *files, const char *folder, const char *lead,
                              const ptie_pattern *pattern) {
@@ -100,13 +106,15 @@ static ptie_status add_files(sequence *files, const char *folder, const char *le
     if (!entries)
         return PTIE_FAIL(PTIE_EIO, "%s: cannot read the folder: %s", folder, strerror(errno));
     ptie_status status = PTIE_OK;
-    for (struct dirent *entry; status == PTIE_OK && (entry = readdir(entries));) {
+    for (const struct dirent *entry; status == PTIE_OK && (entry = next_entry(entries));) {
         if (entry->d_name[0] == '.' && !pattern) continue;
         int length = snprintf(path, sizeof path, "%s%s", lead, entry->d_name);
         if (length < 0 || (size_t)length >= sizeof path) continue;
         if (pattern ? ptie_pattern_number(pattern, path) >= 0 : is_image(path))
             status = add_path(files, path);
     }
+    if (status == PTIE_OK && errno) /* of the entry that ended it: a frame must not be missing quietly */
+        status = PTIE_FAIL(PTIE_EIO, "%s: cannot read the folder: %s", folder, strerror(errno));
     closedir(entries);
     if (files->count > 0) qsort(files->paths, files->count, sizeof *files->paths, by_number);
     return status;
