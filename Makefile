@@ -6,13 +6,12 @@
 #   make levels   the tests again with every kernel level of this machine forced
 #   make sanitize the tests again under ASan + UBSan, then TSan (longer)
 #   make kills    a run of 20,000 frames, killed five times and resumed
-#   make faults   whole jobs with the n-th allocation and the n-th call to the system failing, for all n
 #   make fuzz     every reader against damaged files, one minute each (clang); see tools/fuzz
 
 BUILD ?= build
 MESON_FLAGS ?=
 
-.PHONY: all demo test levels sanitize kills faults fuzz clean
+.PHONY: all demo test levels sanitize kills fuzz clean
 all: $(BUILD)/build.ninja
 	@ninja -C $(BUILD)
 
@@ -41,10 +40,6 @@ sanitize: test-dependencies
 
 kills: all
 	@tests/cli/kills $(BUILD)/ptie 20000 5 128
-
-faults: test-dependencies all
-	@ninja -C $(BUILD) tests/faults/test_faults
-	@CMOCKA_MESSAGE_OUTPUT=TAP PTIE_TEST_SOURCE=. $(BUILD)/tests/faults/test_faults
 
 fuzz: dependencies
 	@tools/fuzz

@@ -96,7 +96,7 @@ static ptie_status run_with(ptie_ctx *ctx, const ptie_model *model) {
     params.model = model;
     params.output = pipeline_path("run.h5");
     params.metrics_csv = pipeline_path("run.csv");
-    params.overwrite = true;
+    params.overwrite = params.resume = true;
     return ptie_run(ctx, &params, &summary, (ptie_progress){0});
 }
 
@@ -204,14 +204,14 @@ static ptie_status images_to_images(void) {
 }
 
 const pipeline pipelines[] = {
-    {"run", run, {"run.h5", "run.csv"}},
-    {"reconstruct", reconstruct, {"run.h5", "run.csv"}},
-    {"denoise", denoise, {"denoised.h5"}},
-    {"simulate", simulate, {"simulated.h5", "simulated.ini"}},
-    {"npy to h5", npy_to_h5, {"converted.h5"}},
-    {"h5 to npy", h5_to_npy, {"converted.npy"}},
-    {"npy to tiff", npy_to_tiff, {"converted.tif"}},
-    {"tiff to npy", tiff_to_npy, {"converted.npy"}},
-    {"images to images", images_to_images, {"out_00.png", "out_01.png", "out_02.png"}},
+    {"run", run, {"run.h5", "run.csv"}, true},
+    {"reconstruct", reconstruct, {"run.h5", "run.csv"}, true},
+    {"denoise", denoise, {"denoised.h5"}, false},
+    {"simulate", simulate, {"simulated.h5", "simulated.ini"}, false},
+    {"npy to h5", npy_to_h5, {"converted.h5"}, false},
+    {"h5 to npy", h5_to_npy, {"converted.npy"}, false},
+    {"npy to tiff", npy_to_tiff, {"converted.tif"}, false},
+    {"tiff to npy", tiff_to_npy, {"converted.npy"}, false},
+    {"images to images", images_to_images, {"out_00.png", "out_01.png", "out_02.png"}, false},
 };
 const int pipeline_count = sizeof pipelines / sizeof *pipelines;

@@ -11,6 +11,7 @@ typedef struct pipeline {
     const char *name;
     ptie_status (*run)(void);
     const char *outputs[PIPELINE_OUTPUTS]; /* file names for pipeline_path; NULL behind the last */
+    bool keeps; /* what is finished stays in ".part" files, and running it again goes on from there */
 } pipeline;
 
 extern const pipeline pipelines[];
