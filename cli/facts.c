@@ -3,7 +3,6 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "json.h"
@@ -31,15 +30,34 @@ void add_number(facts *f, const char *name, double number, const char *format, .
     f->fact[f->count - 1].is_number = true;
 }
 
-const char *rounded_quantity(char text[PTIE_QUANTITY_BYTES], double value, ptie_quantity quantity) {
-    char digits[32];
-    snprintf(digits, sizeof digits, "%.5g", value);
-    return ptie_print_quantity(text, strtod(digits, NULL), quantity);
+void add_to_list(facts *f, const char *name, const char *text) {
+    if (f->count == 0 || strcmp(f->fact[f->count - 1].name, name) != 0) {
+        add_text(f, name, "%s", text);
+        f->fact[f->count - 1].is_list = true;
+        return;
+    }
+    char *list = f->fact[f->count - 1].text;
+    const size_t used = strlen(list);
+    snprintf(list + used, FACT_BYTES - used, ", %s", text);
 }
 
 void add_quantity(facts *f, const char *name, double value, ptie_quantity quantity) {
     char text[PTIE_QUANTITY_BYTES];
-    add_number(f, name, value, "%s", rounded_quantity(text, value, quantity));
+    add_number(f, name, value, "%s", ptie_print_rounded(text, value, quantity));
+}
+
+/* "a, b" as ["a", "b"] */
+static void print_list(const char *list) {
+    char text[FACT_BYTES], *rest = text;
+    snprintf(text, sizeof text, "%s", list);
+    printf("[");
+    for (char *end; (end = strstr(rest, ", ")); rest = end + 2) {
+        *end = 0;
+        json_text(stdout, rest);
+        printf(", ");
+    }
+    json_text(stdout, rest);
+    printf("]");
 }
 
 static void print_json(const facts *f) {
@@ -51,6 +69,8 @@ static void print_json(const facts *f) {
         printf("%s\n  \"%s\": ", i ? "," : "{", key);
         if (f->fact[i].is_number)
             json_number(stdout, f->fact[i].number);
+        else if (f->fact[i].is_list)
+            print_list(f->fact[i].text);
         else
             json_text(stdout, f->fact[i].text);
     }

@@ -13,6 +13,7 @@ typedef struct facts {
         char text[FACT_BYTES];
         double number;
         bool is_number;
+        bool is_list; /* "a, b, c"; in JSON an array */
     } fact[MOST_FACTS];
     int count;
 } facts;
@@ -21,9 +22,9 @@ void add_text(facts *facts, const char *name, const char *format, ...) PTIE_PRIN
 /* `format` is what people read; programs get the number. */
 void add_number(facts *facts, const char *name, double number, const char *format, ...)
     PTIE_PRINTF(4, 5);
-/* With the digits that people care about: 25 kHz, not 24.999999999999996 kHz. */
-const char *rounded_quantity(char text[PTIE_QUANTITY_BYTES], double value, ptie_quantity quantity);
-/* The same as a fact; programs get all digits. */
+/* One more name of a list, which begins with its first. */
+void add_to_list(facts *facts, const char *name, const char *text);
+/* Rounded for people; programs get all digits. */
 void add_quantity(facts *facts, const char *name, double value, ptie_quantity quantity);
 void print_facts(const facts *facts, bool json);
 

@@ -15,14 +15,8 @@ static const char examples[] = "  ptie info                            # this ma
                                "  ptie info shot.mraw --json           # one of a camera, for a program\n"
                                "  ptie info paper > mine.ini           # a preset, to edit\n";
 
-/* "a, b, c" */
 static void add_names(facts *f, const char *name, const char *(*name_of)(int32_t which)) {
-    char names[FACT_BYTES] = "";
-    size_t used = 0;
-    for (int32_t i = 0; name_of(i) && used < sizeof names; i++)
-        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "",
-                                 name_of(i));
-    add_text(f, name, "%s", names);
+    for (int32_t i = 0; name_of(i); i++) add_to_list(f, name, name_of(i));
 }
 
 static ptie_status describe_machine(facts *f) {
@@ -38,6 +32,8 @@ static ptie_status describe_machine(facts *f) {
     add_number(f, "threads", ptie_ctx_threads(ctx), "%d", ptie_ctx_threads(ctx));
     add_text(f, "level", "%s", ptie_ctx_cpu(ctx));
     add_names(f, "levels", ptie_level_name);
+    add_number(f, "half precision", machine.half, "%s",
+               machine.half ? "yes: --fast takes effect" : "no: --fast computes in single precision");
     add_names(f, "kernels", ptie_kernel_name);
     add_names(f, "presets", ptie_preset_name);
     ptie_ctx_free(ctx);
@@ -110,7 +106,7 @@ static void describe_planes(facts *f, const ptie_rig *rig) {
         const ptie_plane *plane = &rig->plane[i];
         char defocus[PTIE_QUANTITY_BYTES];
         if (!plane->used) continue;
-        ptie_print_quantity(defocus, plane->defocus_m, PTIE_LENGTH);
+        ptie_print_rounded(defocus, plane->defocus_m, PTIE_LENGTH);
         add_text(f, names[i], "%s%s%s", defocus, plane->source[0] ? ", " : "", plane->source);
     }
 }

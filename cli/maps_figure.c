@@ -68,7 +68,7 @@ static ptie_status collect(maps *m, const ptie_run_params *run, int64_t frame, d
     char path[PATH_BYTES];
     int64_t recorded = run->frames.first + frame * run->frames.step;
     ptie_panel intensity = {
-        .title = "intensity", .colormap = PTIE_GRAY, .pixel_m = pixel_m / run->rig->binning};
+        .title = "as recorded", .colormap = PTIE_GRAY, .pixel_m = run->rig->pixel_m};
     ptie_panel phase = {.unit = "rad", .colormap = PTIE_DIVERGING, .pixel_m = pixel_m};
 
     path_of_plus(path, run);
@@ -80,7 +80,7 @@ static ptie_status collect(maps *m, const ptie_run_params *run, int64_t frame, d
     snprintf(path, sizeof path, "%s:/entry/data/denoised", run->output);
     if (status == PTIE_OK && run->model) status = add_map(m, path, frame, phase);
     phase.title = "true phase";
-    phase.pixel_m = intensity.pixel_m;
+    phase.pixel_m = pixel_m / run->rig->binning; /* of the planes */
     if (status == PTIE_OK && run->truth) status = add_map(m, run->truth, recorded, phase);
     return status;
 }

@@ -39,8 +39,8 @@ static void add_times(facts *f, const ptie_recording_info *info) {
     const double rate_hz = info->frame_rate_hz;
     if (rate_hz > 0 && info->skip > 1)
         add_number(f, "frame rate", rate_hz, "%s (one of %lld at %s)",
-                   rounded_quantity(kept, rate_hz, PTIE_RATE), (long long)info->skip,
-                   rounded_quantity(exposed, rate_hz * (double)info->skip, PTIE_RATE));
+                   ptie_print_rounded(kept, rate_hz, PTIE_RATE), (long long)info->skip,
+                   ptie_print_rounded(exposed, rate_hz * (double)info->skip, PTIE_RATE));
     else if (rate_hz > 0)
         add_quantity(f, "frame rate", rate_hz, PTIE_RATE);
     if (rate_hz > 0 && info->frames > 0)

@@ -17,8 +17,9 @@ static const char examples[] =
     "      -o plume.ini\n";
 
 static const char notes[] =
-    "The file has every key of a rig with a line about it; those behind a semicolon are\n"
-    "not set. Edit it at will, then let 'ptie rig check' compare it with a recording.\n";
+    "The file has every key of a rig with a line about it; those behind a semicolon\n"
+    "are not set. Edit it at will, then let 'ptie rig check' compare it with a\n"
+    "recording.\n";
 
 /* Options and the keys they set, in the order of the file. */
 typedef struct rig_option {

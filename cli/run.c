@@ -163,9 +163,9 @@ static void print_summary(const settings *s, const ptie_run_summary *r) {
         return;
     }
     char pixel[PTIE_QUANTITY_BYTES];
-    printf("%lld frames of %d x %d px, %s each, in %.3g s (%.4g frames/s)\n\n",
-           (long long)r->frames, r->width_px, r->height_px,
-           ptie_print_quantity(pixel, r->pixel_m, PTIE_LENGTH), r->seconds, rate);
+    printf("%lld frame%s of %d x %d px, %s each, in %.3g s (%.4g frames/s)\n\n",
+           (long long)r->frames, r->frames == 1 ? "" : "s", r->width_px, r->height_px,
+           ptie_print_rounded(pixel, r->pixel_m, PTIE_LENGTH), r->seconds, rate);
     print_measures(columns, count);
 }
 

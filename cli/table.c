@@ -59,5 +59,8 @@ void stat_text(char text[CELL_BYTES], ptie_stat stat) {
     double size = fmax(fabs(stat.mean), fabs(stat.std));
     int decimals = size > 0 && isfinite(size) ? 2 - (int)floor(log10(size)) : 2;
     decimals = decimals < 0 ? 0 : decimals > 9 ? 9 : decimals;
-    snprintf(text, CELL_BYTES, "%.*f ± %.*f", decimals, stat.mean, decimals, stat.std);
+    if (stat.std > 0)
+        snprintf(text, CELL_BYTES, "%.*f ± %.*f", decimals, stat.mean, decimals, stat.std);
+    else /* of one frame */
+        snprintf(text, CELL_BYTES, "%.*f", decimals, stat.mean);
 }

@@ -11,6 +11,7 @@ typedef struct ptie_machine {
     char compiler[96];    /* that built the library, "gcc 12.2.0" */
     char commit[64]; /* of the sources, with "-dirty" after changes; "unknown" outside a repository
                       */
+    bool half; /* whether it computes in half precision, as ptie_denoiser_params.fast asks for */
 } ptie_machine;
 
 /* Thread-safe. */

@@ -28,6 +28,11 @@ PTIE_API PTIE_NODISCARD const char *ptie_parse_quantity(const char *text, ptie_q
 PTIE_API const char *ptie_print_quantity(char text[PTIE_QUANTITY_BYTES], double value,
                                          ptie_quantity quantity);
 
+/* For people: five digits in the largest unit that leaves a number of 1 or more: "232.5 nm", "571.43 ms".
+   Returns `text`.  Thread-safe. */
+PTIE_API const char *ptie_print_rounded(char text[PTIE_QUANTITY_BYTES], double value,
+                                        ptie_quantity quantity);
+
 /* The word of `words` (NULL-terminated) with the smallest edit distance to `word`; NULL if `words` is
    empty.  Ties go to the first.  Thread-safe. */
 PTIE_API const char *ptie_nearest_word(const char *word, const char *const *words);

@@ -20,6 +20,7 @@ void ptie_machine_describe(ptie_machine *machine) {
     ptie_cpu_describe(machine->processor, sizeof machine->processor);
     snprintf(machine->compiler, sizeof machine->compiler, "%s", COMPILER);
     snprintf(machine->commit, sizeof machine->commit, "%s", PTIE_COMMIT);
+    machine->half = ptie_cpu_has_half();
 }
 
 const char *ptie_level_name(int32_t which) {

@@ -87,9 +87,10 @@ typedef struct unit {
     ptie_quantity quantity;
     const char *name;
     double factor, divisor;
-    bool read_only; /* understood, but not what ptie_print_quantity chooses */
+    bool read_only; /* understood, but not chosen for printing */
 } unit;
 
+/* Those of a quantity ascend. */
 static const unit units[] = {
     {PTIE_NUMBER, "", 1, 1, false},    {PTIE_NUMBER, "%", 1, 1e2, true},
     {PTIE_LENGTH, "nm", 1, 1e9, false}, {PTIE_LENGTH, "um", 1, 1e6, false},
@@ -165,6 +166,19 @@ const char *ptie_print_quantity(char text[PTIE_QUANTITY_BYTES], double value, pt
         snprintf(text, PTIE_QUANTITY_BYTES, "%s%s%s", number, *u->name ? " " : "", u->name);
     }
     return text; /* the unit of factor 1 is always exact */
+}
+
+const char *ptie_print_rounded(char text[PTIE_QUANTITY_BYTES], double value, ptie_quantity quantity) {
+    const double size = 1.000001 * fabs(value); /* 0.9999999 mm is 1 mm */
+    const unit *best = NULL;
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        const unit *u = &units[i];
+        if (u->quantity != quantity || u->read_only) continue;
+        if (!best || size >= u->factor / u->divisor) best = u;
+    }
+    ptie_print(text, PTIE_QUANTITY_BYTES, "%.5g%s%s", value / best->factor * best->divisor, *best->name ? " " : "",
+               best->name);
+    return text;
 }
 
 bool ptie_parse_integer(const char *text, int64_t low, int64_t high, int64_t *value) {

@@ -55,7 +55,7 @@ static void add_facts(report *r) {
         ptie_print(text, sizeof text, "%lld", (long long)v->frames);
     add_fact(r, "frames", text);
     ptie_print(text, sizeof text, "%d × %d px%s%s", v->width_px, v->height_px, v->pixel_m > 0 ? ", each " : "",
-               v->pixel_m > 0 ? ptie_print_quantity(pixel, v->pixel_m, PTIE_LENGTH) : "");
+               v->pixel_m > 0 ? ptie_print_rounded(pixel, v->pixel_m, PTIE_LENGTH) : "");
     add_fact(r, "phase", text);
     if (v->seconds && v->finished > 1) {
         ptie_print(text, sizeof text, "%.6g s in steps of %.4g s", v->time[v->finished - 1] - v->time[0],
@@ -165,8 +165,10 @@ static void print_stat(char text[64], const double *values, int64_t count) {
         squares += off * (values[t] - mean);
     }
     text[0] = 0;
-    if (finite > 0)
-        ptie_print(text, 64, "%.3g ± %.2g", mean, finite > 1 ? sqrt(squares / (double)(finite - 1)) : 0);
+    if (finite > 1)
+        ptie_print(text, 64, "%.3g ± %.2g", mean, sqrt(squares / (double)(finite - 1)));
+    else if (finite == 1)
+        ptie_print(text, 64, "%.3g", mean);
 }
 
 static ptie_status add_table(report *r) {
@@ -186,7 +188,11 @@ static ptie_status add_table(report *r) {
             ptie_text_append(&r->html.text, "<tr><th>%s</th><td class=\"n\">%s</td><td class=\"n\">%s</td></tr>\n",
                              metrics[i].label, phase, denoised);
     }
-    ptie_text_append(&r->html.text, "</table>\n<p>Mean ± standard deviation over frames.</p>\n");
+    ptie_text_append(&r->html.text, 
+                     "</table>\n<p>Mean ± standard deviation over frames. MGM: mean gradient in the jet. SBR: mean of the "
+                     "jet over that of the background; close to 0 / 0 where the background is flat. BNS: standard "
+                     "deviation of the background. CNR: contrast over noise. Residual: the map sent back through the "
+                     "forward model against the planes; 0 keeps all noise, 1 is an empty map.</p>\n");
     ptie_free(values);
     return PTIE_OK;
 }
@@ -194,7 +200,7 @@ static ptie_status add_table(report *r) {
 enum { AXES = 2, CURVES = 2 };
 
 /* Two metrics side by side; every n-th frame where there are more than can be seen. */
-static ptie_status add_metrics_figure(report *r, const metric *two) {
+static ptie_status add_metrics_figure(report *r, const metric *two, const char *caption) {
     static const char *const maps[CURVES] = {"phase", "denoised"}, *const names[CURVES] = {"TIE phase", "denoised"};
     const size_t frames = (size_t)r->view.finished, every = frames / MOST_POINTS + 1;
     const int32_t count = r->view.denoised ? 2 : 1;
@@ -218,7 +224,7 @@ static ptie_status add_metrics_figure(report *r, const metric *two) {
     }
     ptie_status status = ptie_draw_curves(r->html.figure, axes, AXES, NULL, 0, true);
     ptie_free(values);
-    return status == PTIE_OK ? ptie_html_figure(&r->html, "") : status;
+    return status == PTIE_OK ? ptie_html_figure(&r->html, caption) : status;
 }
 
 /* --- noise --------------------------------------------------------------------------------------------- */
@@ -307,8 +313,9 @@ static ptie_status add_sections(report *r) {
     PTIE_TRY(add_contact_sheet(r));
     PTIE_TRY(add_averages(r));
     PTIE_TRY(add_table(r));
-    PTIE_TRY(add_metrics_figure(r, &metrics[0]));
-    PTIE_TRY(add_metrics_figure(r, &metrics[2]));
+    PTIE_TRY(add_metrics_figure(r, &metrics[0], "a) Mean gradient in the jet; b) mean of the jet over that of the "
+                                                "background."));
+    PTIE_TRY(add_metrics_figure(r, &metrics[2], "a) Standard deviation of the background; b) contrast over noise."));
     PTIE_TRY(add_spectrum(r));
     add_rig(r);
     return PTIE_OK;

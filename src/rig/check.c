@@ -49,7 +49,7 @@ static void check_size(check *c) {
     add(c, "size", odd ? PTIE_DOUBTFUL : PTIE_GOOD, planes.width_px,
         "%d x %d px recorded, planes of %d x %d px, %s each%s; %lld frames", s->shape.width_px,
         s->shape.height_px, planes.width_px, planes.height_px,
-        ptie_print_quantity(pixel, planes.pixel_m, PTIE_LENGTH),
+        ptie_print_rounded(pixel, planes.pixel_m, PTIE_LENGTH),
         odd ? "; the last column or row has no partner" : "", (long long)s->shape.frames);
 }
 
@@ -190,9 +190,8 @@ static void check_linearity(check *c) {
         if (rig->plane[i].used) largest_m = fmax(largest_m, fabs(rig->plane[i].defocus_m));
     const double chi = ptie_chi(rig->wavelength_m, largest_m, period_m);
     const double linear_m = period_m * sqrt(chi / LINEAR_CHI);
-    const double rounded_m = round(linear_m * 1e7) / 1e7;
-    ptie_print_quantity(nyquist, period_m, PTIE_LENGTH);
-    ptie_print_quantity(finest, rounded_m > 0 ? rounded_m : linear_m, PTIE_LENGTH);
+    ptie_print_rounded(nyquist, period_m, PTIE_LENGTH);
+    ptie_print_rounded(finest, linear_m, PTIE_LENGTH);
     add(c, "linear TIE", judge(chi, LINEAR_CHI, (double)INFINITY), chi,
         "chi = %.3g at Nyquist (%s); periods below %s come out more than 5 %% too weak", chi,
         nyquist, finest);

@@ -47,7 +47,7 @@ static void warn_of_planes(ptie_run_summary *s, const ptie_rig *rig, const ptie_
     if (period_m > COARSEST_PX * s->pixel_m) {
         char text[PTIE_QUANTITY_BYTES];
         warn(s, "defocus large: structures finer than %s (%.0f px) are weaker than linear TIE says by more than 5 %%",
-             ptie_print_quantity(text, period_m, PTIE_LENGTH), period_m / s->pixel_m);
+             ptie_print_rounded(text, period_m, PTIE_LENGTH), period_m / s->pixel_m);
     }
 }
 

@@ -106,6 +106,10 @@ static void quantities_print_as_people_write_them(void **state) {
     assert_string_equal(ptie_print_quantity(text, 0, PTIE_LENGTH), "0 nm");
     assert_string_equal(ptie_print_quantity(text, 0.6, PTIE_NUMBER), "0.6");
     assert_string_equal(ptie_print_quantity(text, 25000, PTIE_RATE), "25 kHz");
+    assert_string_equal(ptie_print_rounded(text, 4.65e-6 / 20, PTIE_LENGTH), "232.5 nm");
+    assert_string_equal(ptie_print_rounded(text, 0.571428571, PTIE_TIME), "571.43 ms");
+    assert_string_equal(ptie_print_rounded(text, -1e-3 * (1 - 1e-15), PTIE_LENGTH), "-1 mm");
+    assert_string_equal(ptie_print_rounded(text, 0, PTIE_RATE), "0 Hz");
     ptie_random random;
     ptie_random_init(&random, 1, PTIE_STREAM_FLOW, 0);
     for (int i = 0; i < 1000; i++) {

@@ -71,5 +71,5 @@ They are converted like any other
   format       TIFF
   frames       3
   sample       u16
-  frame rate   1666.7 Hz
+  frame rate   1.6667 kHz
   ! padded.tif: from * (glob)
