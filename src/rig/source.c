@@ -184,6 +184,14 @@ ptie_source_shape ptie_source_get_shape(const ptie_source *source) {
     return source->shape;
 }
 
+const char *ptie_source_warning(const ptie_source *source, int32_t image) {
+    return ptie_io_info(source->recording[image])->warning;
+}
+
+const char *ptie_source_path(const ptie_source *source, int32_t image) {
+    return source->path[image];
+}
+
 ptie_status ptie_source_read(ptie_source *source, int64_t frame, float *const *images) {
     for (int32_t i = 0; i < source->shape.images; i++)
         PTIE_TRY(ptie_io_read(source->recording[i], frame, images[i]));

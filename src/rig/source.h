@@ -24,6 +24,10 @@ ptie_status ptie_source_open(ptie_source **out, const ptie_run_params *params);
 void ptie_source_close(ptie_source *source); /* NULL is fine */
 ptie_source_shape ptie_source_get_shape(const ptie_source *source);
 
+/* What is wrong with the file of an image that can be read all the same (cut short), or "". */
+const char *ptie_source_warning(const ptie_source *source, int32_t image);
+const char *ptie_source_path(const ptie_source *source, int32_t image);
+
 /* images (out): shape.images maps of (height, width). */
 ptie_status ptie_source_read(ptie_source *source, int64_t frame, float *const *images);
 

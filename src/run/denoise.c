@@ -2,6 +2,7 @@
 #include "run/denoise.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #include "base/file.h"
 #include "base/memory.h"
@@ -20,11 +21,19 @@ typedef struct denoising {
     unsigned char *scratch; /* one part per worker */
 } denoising;
 
+/* A camera's counts are no phase, and would make a map that looks like one. */
+static ptie_status check_unit(const ptie_recording_info *info, const char *path) {
+    if (info->bit_depth == 0 || strcmp(info->unit, "rad") == 0) return PTIE_OK;
+    return PTIE_FAIL(PTIE_EFORMAT, "%s: intensity of a camera (expected phase in rad, as 'ptie run' makes it, found %d bits)",
+                     path, info->bit_depth);
+}
+
 static ptie_status prepare(denoising *d, const ptie_engine *engine) {
     const ptie_denoise_params *p = d->params;
     PTIE_TRY(ptie_output_differs(p->output, p->input));
     PTIE_TRY(ptie_io_open(&d->input, p->input));
     ptie_recording_info info = *ptie_io_info(d->input);
+    PTIE_TRY(check_unit(&info, p->input));
     d->frames = info.frames;
     d->pixels = (size_t)info.width_px * (size_t)info.height_px;
     const ptie_denoiser_params how = {.fast = p->fast, .all_threads = d->frames == 1};

@@ -485,7 +485,7 @@ static void summarise(const run *r, ptie_run_summary *summary) {
         .noise_rad = ptie_running_stat(&r->running[PTIE_ROW_OF_FRAME + PTIE_NOISE_RAD]),
         .has_regions = r->has_regions,
     };
-    ptie_run_warn(summary, r->params->rig, r->running + PTIE_ROW_OF_FRAME, &r->early, &r->late);
+    ptie_run_warn(summary, r->source, r->params->rig, r->running + PTIE_ROW_OF_FRAME, &r->early, &r->late);
 }
 
 static ptie_status finish(run *r, ptie_run_summary *summary) {

@@ -30,6 +30,12 @@ static double finest_period_m(const ptie_rig *rig) {
     return sqrt(pi * rig->wavelength_m * fabs(rig->plane[PTIE_PLUS].defocus_m) / LARGEST_CHI);
 }
 
+static void warn_of_files(ptie_run_summary *s, const ptie_source *source) {
+    for (int32_t i = 0; i < ptie_source_get_shape(source).images; i++)
+        if (ptie_source_warning(source, i)[0])
+            warn(s, "%s: %s", ptie_source_path(source, i), ptie_source_warning(source, i));
+}
+
 static void warn_of_planes(ptie_run_summary *s, const ptie_rig *rig, const ptie_running *of_frame) {
     const ptie_stat imbalance = ptie_running_stat(&of_frame[PTIE_IMBALANCE]);
     const ptie_stat brightness = ptie_running_stat(&of_frame[PTIE_BRIGHTNESS]);
@@ -62,8 +68,9 @@ static void warn_of_phase(ptie_run_summary *s, const ptie_running *early, const 
         warn(s, "no regions: no flow to tell from the background, so no MGM, SBR, BNS and CNR");
 }
 
-void ptie_run_warn(ptie_run_summary *s, const ptie_rig *rig, const ptie_running *of_frame,
-                   const ptie_running *early, const ptie_running *late) {
+void ptie_run_warn(ptie_run_summary *s, const ptie_source *source, const ptie_rig *rig,
+                   const ptie_running *of_frame, const ptie_running *early, const ptie_running *late) {
+    warn_of_files(s, source);
     warn_of_planes(s, rig, of_frame);
     warn_of_phase(s, early, late);
 }

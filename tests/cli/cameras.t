@@ -73,3 +73,16 @@ They are converted like any other
   sample       u16
   frame rate   1.6667 kHz
   ! padded.tif: from * (glob)
+
+What is cut short is used, and the result says so
+  $ ptie rig new --layout side-by-side -o split.ini && ptie reconstruct --rig split.ini $TESTS/../golden/cameras/short.mraw -o short.h5 | head -1
+  3 frames of 3 x 5 px, 20 um each, in * (glob)
+  ! split.ini: written; * (glob)
+  ! short.h5: *: file is cut short: 3 of 9 frames are there (glob)
+  ! short.h5: light unsteady: * (glob)
+  ! short.h5: no regions: * (glob)
+
+A recording is no phase
+  $ ptie denoise $TESTS/../golden/cameras/padded.mraw -m $TESTS/../../models/paper.safetensors -o no.h5
+  ! ptie: *: intensity of a camera (expected phase in rad, as 'ptie run' makes it, found 12 bits) (glob)
+  [1]
