@@ -135,6 +135,7 @@ static ptie_status read_text(ptie_preset *preset, const char *text, const char *
         *preset = built_in(preset->base, "custom");
         PTIE_TRY(ptie_ini_read(preset, keys, KEYS, text, where));
     }
+    if (!preset->name[0]) snprintf(preset->name, sizeof preset->name, "custom");
     return check_preset(preset, where);
 }
 
