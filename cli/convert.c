@@ -11,7 +11,7 @@ static const char examples[] =
     "  ptie convert shot.cihx shot.h5 --compress\n\n"
     "  # phase as a stack for Fiji, with scale and frame interval\n"
     "  ptie convert phase.h5 phase.tif\n\n"
-    "  # every second of the first 100 frames, a rectangle of them\n"
+    "  # every second frame of the first 100, a rectangle of each\n"
     "  ptie convert phase.h5 part.npy --frames 0:100:2 --roi 64,0,128,256\n\n"
     "  # images with one grey scale for all\n"
     "  ptie convert phase.h5 flow_%04d.png --range -1:3\n\n"
@@ -21,13 +21,13 @@ static const char examples[] =
     "  ptie convert phase.h5 phase.mat --frames 0:50\n";
 
 static const char notes[] =
-    "INPUT is anything 'ptie info' knows as a recording: HDF5 (FILE.h5 or\n"
-    "FILE.h5:/path/inside), TIFF, NPY, PNG, a folder of numbered images, or a\n"
-    "pattern with one %d. The ending of OUTPUT decides what is written: .h5 .tif\n"
-    ".npy .mat .mraw .png (a pattern with one %d for several frames) .y4m, and .mp4\n"
-    "where the program ffmpeg is installed. Integers of up to 16 bits stay integers,\n"
-    "everything else becomes float32. Unit, pixel, frame rate and frame numbers go\n"
-    "along where the kind of file has a place for them.\n";
+    "INPUT is anything 'ptie info' knows as a recording: MRAW (.mraw, .cihx), CINE,\n"
+    "HDF5 (FILE.h5 or FILE.h5:/path/inside), TIFF, MAT, NPY, PNG, raw, a folder of\n"
+    "numbered images, or a pattern with one %d. The ending of OUTPUT decides what is\n"
+    "written: .h5 .tif .npy .mat .mraw .png (a pattern with one %d for several\n"
+    "frames) .y4m, and .mp4 where the program ffmpeg is installed. Integers of up to\n"
+    "16 bits stay integers, everything else becomes float32. Unit, pixel, frame rate\n"
+    "and frame numbers go along where the kind of file has a place for them.\n";
 
 typedef struct settings {
     compute_options compute;

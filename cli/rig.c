@@ -19,7 +19,7 @@ static const struct {
 static int print_overview(void) {
     printf("Rig files: how a set-up is built, written down once.\n\n"
            "  ptie rig new --layout mosaic --mosaic crysta --pixel \"20 um\" -o lab.ini\n"
-           "  ptie rig calibrate lab.ini --reference noflow.mraw\n"
+           "  ptie rig calibrate lab.ini --target target.mraw\n"
            "  ptie rig check lab.ini flow.mraw\n"
            "  ptie run --rig lab.ini flow.mraw --model models/paper.safetensors -o phase.h5\n\n"
            "Commands:\n");

@@ -13,6 +13,8 @@
 static const char run_examples[] =
     "  # pairs of planes in one HDF5 file; the rig says how they were taken\n"
     "  ptie run --rig jet.ini jet.h5 --model models/paper.safetensors -o phase.h5\n\n"
+    "  # a polarisation camera: all planes in each image\n"
+    "  ptie run --rig lab.ini flow.mraw --model m.safetensors -o phase.h5\n\n"
     "  # planes in two files\n"
     "  ptie run --rig lab.ini --plus p.tif --minus m.tif --model m.safetensors \\\n"
     "      -o phase.h5\n\n"
@@ -26,10 +28,10 @@ static const char reconstruct_examples[] =
     "      -o phase.h5\n";
 
 static const char notes[] =
-    "RECORDING holds all planes (HDF5; the rig names the data sets), or the flow\n"
-    "where the rig's set is a reference. Files: HDF5 (FILE.h5 or\n"
-    "FILE.h5:/path/inside), TIFF, NPY, PNG, a folder of numbered images, or a\n"
-    "pattern with one %d.\n\n"
+    "RECORDING holds all planes (one image of a polarisation camera, or data sets\n"
+    "of HDF5; the rig names them), or the flow where the rig's set is a reference.\n"
+    "Files: MRAW (.mraw, .cihx), CINE, HDF5 (FILE.h5 or FILE.h5:/path/inside), TIFF,\n"
+    "MAT, NPY, PNG, raw, a folder of numbered images, or a pattern with one %d.\n\n"
     "The table has mean and standard deviation over frames: MGM, mean gradient in\n"
     "the jet; SBR, mean jet / mean background; BNS, deviation of the background;\n"
     "CNR, contrast over noise; with --truth also RMSE, correlation,\n"

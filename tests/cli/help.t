@@ -277,10 +277,10 @@ reconstruct
                               plain, json, none; default: auto)
     -h, --help                this text
   
-  RECORDING holds all planes (HDF5; the rig names the data sets), or the flow
-  where the rig's set is a reference. Files: HDF5 (FILE.h5 or
-  FILE.h5:/path/inside), TIFF, NPY, PNG, a folder of numbered images, or a
-  pattern with one %d.
+  RECORDING holds all planes (one image of a polarisation camera, or data sets
+  of HDF5; the rig names them), or the flow where the rig's set is a reference.
+  Files: MRAW (.mraw, .cihx), CINE, HDF5 (FILE.h5 or FILE.h5:/path/inside), TIFF,
+  MAT, NPY, PNG, raw, a folder of numbered images, or a pattern with one %d.
   
   The table has mean and standard deviation over frames: MGM, mean gradient in
   the jet; SBR, mean jet / mean background; BNS, deviation of the background;
@@ -325,6 +325,9 @@ run
   Examples:
     # pairs of planes in one HDF5 file; the rig says how they were taken
     ptie run --rig jet.ini jet.h5 --model models/paper.safetensors -o phase.h5
+  
+    # a polarisation camera: all planes in each image
+    ptie run --rig lab.ini flow.mraw --model m.safetensors -o phase.h5
   
     # planes in two files
     ptie run --rig lab.ini --plus p.tif --minus m.tif --model m.safetensors \
@@ -372,10 +375,10 @@ run
                               plain, json, none; default: auto)
     -h, --help                this text
   
-  RECORDING holds all planes (HDF5; the rig names the data sets), or the flow
-  where the rig's set is a reference. Files: HDF5 (FILE.h5 or
-  FILE.h5:/path/inside), TIFF, NPY, PNG, a folder of numbered images, or a
-  pattern with one %d.
+  RECORDING holds all planes (one image of a polarisation camera, or data sets
+  of HDF5; the rig names them), or the flow where the rig's set is a reference.
+  Files: MRAW (.mraw, .cihx), CINE, HDF5 (FILE.h5 or FILE.h5:/path/inside), TIFF,
+  MAT, NPY, PNG, raw, a folder of numbered images, or a pattern with one %d.
   
   The table has mean and standard deviation over frames: MGM, mean gradient in
   the jet; SBR, mean jet / mean background; BNS, deviation of the background;
@@ -436,7 +439,7 @@ convert
     # phase as a stack for Fiji, with scale and frame interval
     ptie convert phase.h5 phase.tif
   
-    # every second of the first 100 frames, a rectangle of them
+    # every second frame of the first 100, a rectangle of each
     ptie convert phase.h5 part.npy --frames 0:100:2 --roi 64,0,128,256
   
     # images with one grey scale for all
@@ -468,13 +471,13 @@ convert
                               plain, json, none; default: auto)
     -h, --help                this text
   
-  INPUT is anything 'ptie info' knows as a recording: HDF5 (FILE.h5 or
-  FILE.h5:/path/inside), TIFF, NPY, PNG, a folder of numbered images, or a
-  pattern with one %d. The ending of OUTPUT decides what is written: .h5 .tif
-  .npy .mat .mraw .png (a pattern with one %d for several frames) .y4m, and .mp4
-  where the program ffmpeg is installed. Integers of up to 16 bits stay integers,
-  everything else becomes float32. Unit, pixel, frame rate and frame numbers go
-  along where the kind of file has a place for them.
+  INPUT is anything 'ptie info' knows as a recording: MRAW (.mraw, .cihx), CINE,
+  HDF5 (FILE.h5 or FILE.h5:/path/inside), TIFF, MAT, NPY, PNG, raw, a folder of
+  numbered images, or a pattern with one %d. The ending of OUTPUT decides what is
+  written: .h5 .tif .npy .mat .mraw .png (a pattern with one %d for several
+  frames) .y4m, and .mp4 where the program ffmpeg is installed. Integers of up to
+  16 bits stay integers, everything else becomes float32. Unit, pixel, frame rate
+  and frame numbers go along where the kind of file has a place for them.
 
 info
   $ ptie help info
