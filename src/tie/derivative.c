@@ -15,12 +15,13 @@ PTIE_CLONES static double mean_of_planes(const float *const *planes, int32_t cou
     enum { LANES = 16 };
     double lane[LANES] = {0}, sum = 0;
     size_t i = 0;
-    for (; i + LANES <= pixels; i += LANES)
-        for (int k = 0; k < LANES; k++) {
-            double total = (double)planes[0][i + (size_t)k];
-            for (int32_t p = 1; p < count; p++) total += (double)planes[p][i + (size_t)k];
-            lane[k] += total;
-        }
+    for (; i + LANES <= pixels; i += LANES) {
+        double total[LANES];
+        for (int k = 0; k < LANES; k++) total[k] = (double)planes[0][i + (size_t)k];
+        for (int32_t p = 1; p < count; p++)
+            for (int k = 0; k < LANES; k++) total[k] += (double)planes[p][i + (size_t)k];
+        for (int k = 0; k < LANES; k++) lane[k] += total[k];
+    }
     for (; i < pixels; i++) {
         double total = (double)planes[0][i];
         for (int32_t p = 1; p < count; p++) total += (double)planes[p][i];
