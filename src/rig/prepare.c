@@ -10,7 +10,8 @@
 
 /* The scratch of one run. */
 typedef struct work {
-    float *image[PTIE_ROLES];      /* (sensor height, width) without dark */
+    const float *image[PTIE_ROLES]; /* (sensor height, width) without dark */
+    float *own_image[PTIE_ROLES];   /* where a dark image is taken off */
     float *channel[PTIE_CHANNELS]; /* (H, W) */
     float *plane[PTIE_ROLES];      /* (H, W) */
     void *step;                    /* of the splitter or a resampler */
@@ -27,7 +28,7 @@ static work carve(const ptie_prepare *p, ptie_slicer *slicer) {
         if (p->resampler[i]) step = larger(step, ptie_prep_resampler_scratch(p->resampler[i]));
     if (p->light) step = larger(step, ptie_fill_scratch_bytes(p->width, p->height));
     for (int32_t i = 0; i < p->images; i++)
-        w.image[i] = ptie_slice(slicer, p->sensor_pixels, sizeof(float));
+        w.own_image[i] = ptie_slice(slicer, p->sensor_pixels, sizeof(float));
     for (int32_t i = 0; i < p->channels; i++)
         w.channel[i] = ptie_slice(slicer, p->pixels, sizeof(float));
     for (int32_t i = 0; i < p->planes; i++)
@@ -42,10 +43,13 @@ size_t ptie_prepare_scratch_bytes(const ptie_prepare *p) {
     return slicer.used;
 }
 
-static void subtract_dark(const ptie_prepare *p, const work *w, const float *const *images) {
+static void subtract_dark(const ptie_prepare *p, work *w, const float *const *images) {
     for (int32_t i = 0; i < p->images; i++) {
-        memcpy(w->image[i], images[i], p->sensor_pixels * sizeof(float));
-        if (p->dark[i]) ptie_subtract_dark(w->image[i], p->dark[i], p->sensor_pixels);
+        w->image[i] = images[i];
+        if (!p->dark[i]) continue;
+        memcpy(w->own_image[i], images[i], p->sensor_pixels * sizeof(float));
+        ptie_subtract_dark(w->own_image[i], p->dark[i], p->sensor_pixels);
+        w->image[i] = w->own_image[i];
     }
 }
 
@@ -95,7 +99,7 @@ static void bring_to_grid(const ptie_prepare *p, const work *w) {
 }
 
 /* Images to planes, up to a step; `raw`: means are not matched. */
-static ptie_status compute(const ptie_prepare *p, const work *w, const float *const *images,
+static ptie_status compute(const ptie_prepare *p, work *w, const float *const *images,
                            ptie_step last, bool raw) {
     subtract_dark(p, w, images);
     if (last < PTIE_STEP_SPLIT) return PTIE_OK;
@@ -112,7 +116,7 @@ static ptie_status compute(const ptie_prepare *p, const work *w, const float *co
 
 ptie_status ptie_prepare_raw(const ptie_prepare *p, const float *const *images,
                              float *const *planes, ptie_step last, void *scratch) {
-    const work w = carve(p, &(ptie_slicer){.base = scratch});
+    work w = carve(p, &(ptie_slicer){.base = scratch});
     PTIE_TRY(compute(p, &w, images, last, true));
     for (int32_t i = 0; i < p->measured; i++)
         memcpy(planes[i], w.plane[i], p->pixels * sizeof(float));
@@ -125,20 +129,27 @@ static void fill_opaque(const ptie_prepare *p, const work *w) {
         ptie_fill_masked(w->plane[i], p->light, p->width, p->height, w->step);
 }
 
+/* The map of a step before the last one, or binned. */
+static void deliver(const ptie_prepare *p, const work *w, float *map, int32_t i) {
+    const float *found = w->plane[i];
+    if (p->last < PTIE_STEP_MIX) found = p->last == PTIE_STEP_SPLIT && p->splitter ? w->channel[i] : w->image[i];
+    if (p->last == PTIE_STEP_MASK)
+        ptie_bin(map, found, p->width, p->height, p->rig.binning);
+    else
+        memcpy(map, found, (size_t)p->shape.width_px * (size_t)p->shape.height_px * sizeof(float));
+}
+
 ptie_status ptie_prepare_run(const ptie_prepare *p, const float *const *images, float *const *maps,
                              void *scratch) {
-    const work w = carve(p, &(ptie_slicer){.base = scratch});
-    float *const *found = w.plane;
-    if (p->last < PTIE_STEP_MIX)
-        found = p->last == PTIE_STEP_SPLIT && p->splitter ? w.channel : w.image;
+    work w = carve(p, &(ptie_slicer){.base = scratch});
+    if (p->last == PTIE_STEP_MASK && p->rig.binning == 1) { /* made where they are wanted */
+        for (int32_t i = 0; i < p->planes; i++) w.plane[i] = maps[i];
+        PTIE_TRY(compute(p, &w, images, p->last, false));
+        fill_opaque(p, &w);
+        return PTIE_OK;
+    }
     PTIE_TRY(compute(p, &w, images, p->last, false));
     if (p->last == PTIE_STEP_MASK) fill_opaque(p, &w);
-    const size_t bytes = (size_t)p->shape.width_px * (size_t)p->shape.height_px * sizeof(float);
-    for (int32_t i = 0; i < p->shape.planes; i++) {
-        if (p->last == PTIE_STEP_MASK && p->rig.binning > 1)
-            ptie_bin(maps[i], found[i], p->width, p->height, p->rig.binning);
-        else
-            memcpy(maps[i], found[i], bytes);
-    }
+    for (int32_t i = 0; i < p->shape.planes; i++) deliver(p, &w, maps[i], i);
     return PTIE_OK;
 }
