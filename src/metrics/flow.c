@@ -25,22 +25,20 @@ typedef struct moments {
     sums count, first, second;
 } moments;
 
-PTIE_INLINE void add_pixel(moments *m, size_t lane, double value, double in) {
-    m->count.value[lane] += in;
-    m->first.value[lane] += in * value;
-    m->second.value[lane] += in * value * value;
+/* Nothing of a pixel that is not in the region. */
+PTIE_INLINE void add_pixel(moments *m, size_t lane, double value, bool in) {
+    const double counted = in ? value : 0;
+    m->count.value[lane] += in ? 1 : 0;
+    m->first.value[lane] += counted;
+    m->second.value[lane] += counted * counted;
 }
 
-PTIE_CLONES static void add_regions(moments *jet, moments *background, const float *map, const uint8_t *labels,
-                                    size_t pixels, double level) {
-    for (size_t i = 0; i < pixels; i += LANES) {
-        const size_t count = pixels - i < LANES ? pixels - i : LANES;
-        for (size_t l = 0; l < count; l++) {
-            const double value = (double)map[i + l] - level;
-            add_pixel(jet, l, value, labels[i + l] == PTIE_JET);
-            add_pixel(background, l, value, labels[i + l] == PTIE_BACKGROUND);
-        }
-    }
+PTIE_CLONES static void add_region(moments *restrict m, const float *restrict map, const uint8_t *restrict labels,
+                                   uint8_t region, size_t pixels, double level) {
+    const size_t whole = pixels / LANES * LANES;
+    for (size_t i = 0; i < whole; i += LANES)
+        for (size_t l = 0; l < LANES; l++) add_pixel(m, l, (double)map[i + l] - level, labels[i + l] == region);
+    for (size_t i = whole; i < pixels; i++) add_pixel(m, i - whole, (double)map[i] - level, labels[i] == region);
 }
 
 typedef struct region {
@@ -66,12 +64,15 @@ PTIE_INLINE double gradient(const stencil *s, ptrdiff_t left, ptrdiff_t x, ptrdi
 }
 
 /* Adds the gradients of a line's points inside the jet. */
-PTIE_CLONES static void add_gradients(sums *sum, const stencil *s, const uint8_t *labels, ptrdiff_t width) {
+PTIE_CLONES static void add_gradients(sums *restrict sum, const stencil *restrict s, const uint8_t *restrict labels,
+                                      ptrdiff_t width) {
     if (labels[0] == PTIE_JET) sum->value[0] += gradient(s, 0, 0, width > 1);
     ptrdiff_t x = 1;
     for (; x + LANES < width; x += LANES)
-        for (ptrdiff_t l = 0; l < LANES; l++)
-            sum->value[l] += labels[x + l] == PTIE_JET ? gradient(s, x + l - 1, x + l, x + l + 1) : 0;
+        for (ptrdiff_t l = 0; l < LANES; l++) {
+            const double steepness = gradient(s, x + l - 1, x + l, x + l + 1);
+            sum->value[l] += labels[x + l] == PTIE_JET ? steepness : 0;
+        }
     for (; x < width; x++)
         if (labels[x] == PTIE_JET) sum->value[0] += gradient(s, x - 1, x, x + (x + 1 < width));
 }
@@ -96,7 +97,8 @@ ptie_status ptie_metrics_flow(ptie_flow_metrics *out, const float *map, const ui
        variance. */
     const double level = (double)map[0];
     moments of_jet = {0}, of_background = {0};
-    add_regions(&of_jet, &of_background, map, labels, pixels, level);
+    add_region(&of_jet, map, labels, PTIE_JET, pixels, level);
+    add_region(&of_background, map, labels, PTIE_BACKGROUND, pixels, level);
     const region jet = region_of(&of_jet, level), background = region_of(&of_background, level);
     if (jet.count == 0 || background.count == 0)
         return PTIE_FAIL(
