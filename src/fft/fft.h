@@ -40,6 +40,8 @@ size_t ptie_fft_filter_floats(const ptie_fft *fft);
 /* filter (out): response(k^2), k^2 in (rad/m)^2. */
 void ptie_fft_filter_fill(const ptie_fft *fft, float *filter, double pixel_m,
                           double (*response)(double k2, const void *context), const void *context);
+/* out = filter times the spectrum; out may be the spectrum. */
+void ptie_fft_filter_to(const ptie_fft *fft, float *out, const float *spectrum, const float *filter);
 /* Multiplies the spectrum, in place. */
 void ptie_fft_filter_apply(const ptie_fft *fft, float *spectrum, const float *filter);
 /* Modes of the image that an entry of this column stands for. */

@@ -19,16 +19,20 @@ void ptie_fft_filter_fill(const ptie_fft *fft, float *filter, double pixel_m,
     }
 }
 
-PTIE_CLONES void ptie_fft_filter_apply(const ptie_fft *fft, float *spectrum, const float *filter) {
+PTIE_CLONES void ptie_fft_filter_to(const ptie_fft *fft, float *out, const float *spectrum, const float *filter) {
     const size_t entries = ptie_fft_filter_floats(fft);
     if (ptie_fft_entry_floats(fft) == 1) {
-        for (size_t i = 0; i < entries; i++) spectrum[i] *= filter[i];
+        for (size_t i = 0; i < entries; i++) out[i] = spectrum[i] * filter[i];
         return;
     }
     for (size_t i = 0; i < entries; i++) {
-        spectrum[2 * i] *= filter[i];
-        spectrum[2 * i + 1] *= filter[i];
+        out[2 * i] = spectrum[2 * i] * filter[i];
+        out[2 * i + 1] = spectrum[2 * i + 1] * filter[i];
     }
+}
+
+void ptie_fft_filter_apply(const ptie_fft *fft, float *spectrum, const float *filter) {
+    ptie_fft_filter_to(fft, spectrum, spectrum, filter);
 }
 
 /* A half spectrum leaves out the conjugate of every column but the first and, for an even width,

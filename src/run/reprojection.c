@@ -9,19 +9,17 @@
 #include "base/memory.h"
 #include "fft/fft.h"
 #include "rig/planes.h"
-#include "tie/derivative.h"
 #include "tie/solver.h"
 
 #define TWO_PI 6.283185307179586476925
 
 struct ptie_reprojection {
     ptie_solver *solver; /* by diffraction; NULL: by the linear model, which has all of the rest */
-    ptie_tie_weights weights;
     ptie_fft *fft;
-    /* Per entry of the spectrum: the root of how often it counts, 0 for the mean, which is not compared; and that
+    /* Per float of the spectrum: the root of how often it counts, 0 for the mean, which is not compared; and that
        times the forward model, a phase's dI/dz / I. */
     float *count, *forward;
-    size_t pixels, floats, bytes; /* of an image, a spectrum, and one worker's scratch */
+    size_t pixels, entries, floats, bytes; /* of an image, a spectrum and its buffer, and one worker's scratch */
     unsigned char *scratch;
 };
 
@@ -43,17 +41,17 @@ static double forward_response(double k2, const void *context) {
 }
 
 static ptie_status build_linear(ptie_reprojection *r, const ptie_solver_params *solver) {
-    PTIE_TRY(ptie_tie_weigh(&r->weights, solver));
     PTIE_TRY(ptie_fft_create(&r->fft, solver->boundary == PTIE_MIRROR ? PTIE_FFT_MIRROR : PTIE_FFT_REAL,
                              solver->width_px, solver->height_px));
-    const size_t entries = ptie_fft_filter_floats(r->fft);
-    PTIE_TRY(ptie_alloc_status(&r->count, entries, sizeof(float), "reprojection"));
-    PTIE_TRY(ptie_alloc_status(&r->forward, entries, sizeof(float), "reprojection"));
+    const size_t per_entry = ptie_fft_entry_floats(r->fft), columns = (size_t)ptie_fft_columns(r->fft);
+    r->entries = ptie_fft_filter_floats(r->fft) * per_entry;
+    PTIE_TRY(ptie_alloc_status(&r->count, r->entries, sizeof(float), "reprojection"));
+    PTIE_TRY(ptie_alloc_status(&r->forward, r->entries, sizeof(float), "reprojection"));
     ptie_fft_filter_fill(r->fft, r->forward, solver->pixel_m, forward_response, solver);
-    const int32_t columns = ptie_fft_columns(r->fft);
-    for (int32_t i = 0; i < (int32_t)entries; i++) {
-        r->count[i] = i > 0 ? (float)sqrt(ptie_fft_share(r->fft, i % columns, i / columns)) : 0;
-        r->forward[i] *= r->count[i];
+    for (size_t i = r->entries; i-- > 0;) { /* from the end: forward is spread in place */
+        const size_t k = i / per_entry;
+        r->count[i] = k > 0 ? (float)sqrt(ptie_fft_share(r->fft, (int32_t)(k % columns), (int32_t)(k / columns))) : 0;
+        r->forward[i] = r->count[i] * r->forward[k];
     }
     r->floats = ptie_fft_spectrum_floats(r->fft);
     ptie_slicer slicer = {0};
@@ -102,49 +100,53 @@ void ptie_reprojection_free(ptie_reprojection *r) {
     ptie_free(r);
 }
 
-/* Sums of (a - b)^2 and of b^2, in lanes: this vectorises, and every instruction set gives the same bits. */
+/* Sums of (f a - c b)^2 and of (c b)^2, in lanes: this vectorises, and every instruction set gives the same bits. */
 enum { LANES = 16 };
 typedef struct sums {
     double off[LANES], all[LANES];
 } sums;
 
-PTIE_CLONES static void add_squares(sums *s, const float *a, const float *b, size_t count) {
-    const size_t whole = count / LANES * LANES;
-    for (size_t i = 0; i < whole; i += LANES)
-        for (size_t l = 0; l < LANES; l++) {
-            const double d = (double)a[i + l] - (double)b[i + l];
-            s->off[l] += d * d;
-            s->all[l] += (double)b[i + l] * (double)b[i + l];
-        }
-    for (size_t i = whole; i < count; i++) {
-        const double d = (double)a[i] - (double)b[i];
-        s->off[i - whole] += d * d;
-        s->all[i - whole] += (double)b[i] * (double)b[i];
-    }
+/* a: map, f: forward; b: measured, c: count, as long as a spectrum. */
+PTIE_INLINE void add_square(sums *s, size_t lane, float a, float f, float b, float c) {
+    const float measured = c * b;
+    const double off = (double)(f * a) - (double)measured;
+    s->off[lane] += off * off;
+    s->all[lane] += (double)measured * (double)measured;
 }
 
-static double relative_distance(const float *a, const float *b, size_t count) {
+PTIE_CLONES static void add_squares(sums *restrict s, const float *restrict a, const float *restrict f,
+                                    const float *restrict b, const float *restrict c, size_t count) {
+    const size_t whole = count / LANES * LANES;
+    for (size_t i = 0; i < whole; i += LANES)
+        for (size_t l = 0; l < LANES; l++) add_square(s, l, a[i + l], f[i + l], b[i + l], c[i + l]);
+    for (size_t i = whole; i < count; i++) add_square(s, i - whole, a[i], f[i], b[i], c[i]);
+}
+
+static double relative_distance(const ptie_reprojection *r, const work *w) {
     sums s = {{0}, {0}};
     double off = 0, all = 0;
-    add_squares(&s, a, b, count);
+    add_squares(&s, w->reprojected, r->forward, w->measured, r->count, r->entries);
     for (int l = 0; l < LANES; l++) off += s.off[l], all += s.all[l];
     return all > 0 ? sqrt(off / all) : (double)NAN;
+}
+
+static work work_of(const ptie_reprojection *r, int32_t worker) {
+    return carve(r, &(ptie_slicer){.base = r->scratch + (size_t)worker * r->bytes});
+}
+
+float *ptie_reprojection_measured(const ptie_reprojection *r, int32_t worker) {
+    return r->solver ? NULL : work_of(r, worker).measured;
 }
 
 ptie_status ptie_reprojection_measure(const ptie_reprojection *r, int32_t worker, double *residual,
                                       const float *const *maps, size_t count, const float *const *planes) {
     if (r->solver)
         return ptie_tie_reproject(r->solver, residual, maps, count, planes, r->scratch + (size_t)worker * r->bytes);
-    const work w = carve(r, &(ptie_slicer){.base = r->scratch + (size_t)worker * r->bytes});
-    const size_t floats = ptie_fft_filter_floats(r->fft) * ptie_fft_entry_floats(r->fft);
-    PTIE_TRY(ptie_tie_derivative(w.image, &r->weights, planes));
-    ptie_fft_forward(r->fft, w.measured, w.image);
-    ptie_fft_filter_apply(r->fft, w.measured, r->count);
+    const work w = work_of(r, worker);
     for (size_t n = 0; n < count; n++) {
         memcpy(w.image, maps[n], r->pixels * sizeof *w.image);
         ptie_fft_forward(r->fft, w.reprojected, w.image);
-        ptie_fft_filter_apply(r->fft, w.reprojected, r->forward);
-        residual[n] = relative_distance(w.reprojected, w.measured, floats);
+        residual[n] = relative_distance(r, &w);
     }
     return PTIE_OK;
 }

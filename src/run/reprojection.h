@@ -16,7 +16,10 @@ ptie_status ptie_reprojection_create(ptie_reprojection **out, const ptie_rig *ri
                                      int32_t width_px, int32_t height_px, int32_t workers);
 void ptie_reprojection_free(ptie_reprojection *reprojection); /* NULL is fine */
 
-/* residual (out): one number per map.  Planes as in ptie_frame_solve. */
+/* Of the linear model: where the worker's spectrum of (dI/dz) / I belongs before it measures; NULL for the others. */
+float *ptie_reprojection_measured(const ptie_reprojection *reprojection, int32_t worker);
+
+/* residual (out): one number per map.  Planes as in ptie_frame_solve; the linear model takes its spectrum instead. */
 ptie_status ptie_reprojection_measure(const ptie_reprojection *reprojection, int32_t worker,
                                       double *residual, const float *const *maps, size_t count,
                                       const float *const *planes);

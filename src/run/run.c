@@ -332,7 +332,9 @@ static ptie_status solve_frame(void *context, int64_t frame, size_t i, int32_t w
     for (int k = 0; k < PTIE_ROW; k++) s->row[k] = (double)NAN;
     PTIE_TRY(prepare_planes(r, s, d));
     for (int32_t k = 0; k < r->shape.planes; k++) planes[k] = d->plane[k];
-    PTIE_TRY(ptie_frame_solve(r->plan, worker, s->phase, s->denoised, planes));
+    float *measured = ptie_reprojection_measured(r->reprojection, worker);
+    PTIE_TRY(measured ? ptie_frame_solve_measured(r->plan, worker, s->phase, s->denoised, measured, planes)
+                      : ptie_frame_solve(r->plan, worker, s->phase, s->denoised, planes));
     bin_truth(r, s);
     inspect_planes(r, s, d);
     PTIE_TRY(compare_with_planes(r, s, d, worker));

@@ -126,13 +126,22 @@ static ptie_status remove_background(const ptie_frame_plan *plan, float *phase, 
     return PTIE_OK;
 }
 
-ptie_status ptie_frame_solve(const ptie_frame_plan *plan, int32_t worker, float *phase, float *denoised,
-                             const float *const *planes) {
-    void *scratch = plan->scratch[worker];
-    PTIE_TRY(ptie_tie_solve(plan->solver, phase, planes, scratch, NULL));
+static ptie_status clean(const ptie_frame_plan *plan, void *scratch, float *phase, float *denoised) {
     PTIE_TRY(remove_background(plan, phase, scratch));
     if (!plan->denoiser || !denoised) return PTIE_OK;
     return ptie_nn_denoise_rad(plan->denoiser, denoised, phase, plan->polarity, scratch);
+}
+
+ptie_status ptie_frame_solve(const ptie_frame_plan *plan, int32_t worker, float *phase, float *denoised,
+                             const float *const *planes) {
+    PTIE_TRY(ptie_tie_solve(plan->solver, phase, planes, plan->scratch[worker], NULL));
+    return clean(plan, plan->scratch[worker], phase, denoised);
+}
+
+ptie_status ptie_frame_solve_measured(const ptie_frame_plan *plan, int32_t worker, float *phase, float *denoised,
+                                      float *measured, const float *const *planes) {
+    PTIE_TRY(ptie_tie_solve_direct(plan->solver, phase, measured, planes, plan->scratch[worker]));
+    return clean(plan, plan->scratch[worker], phase, denoised);
 }
 
 double ptie_frame_noise_rad(const ptie_frame_plan *plan, double sigma) {

@@ -23,6 +23,10 @@ void ptie_frame_plan_set_background(ptie_frame_plan *plan, float *background);
 ptie_status ptie_frame_solve(const ptie_frame_plan *plan, int32_t worker, float *phase, float *denoised,
                              const float *const *planes);
 
+/* The same for the linear model (ptie_reprojection_measured): measured (out), the spectrum of (dI/dz) / I. */
+ptie_status ptie_frame_solve_measured(const ptie_frame_plan *plan, int32_t worker, float *phase, float *denoised,
+                                      float *measured, const float *const *planes);
+
 /* Standard deviation of the phase that white noise of relative deviation sigma in each plane causes. */
 double ptie_frame_noise_rad(const ptie_frame_plan *plan, double sigma);
 

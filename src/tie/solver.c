@@ -142,23 +142,33 @@ void ptie_tie_level(const ptie_solver *solver, float *phase_rad) {
     ptie_tie_blank(phase_rad, mask, pixels);
 }
 
-static ptie_status solve_direct(const ptie_solver *solver, float *phase_rad, const float *const *planes,
-                                void *scratch, ptie_solver_report *report) {
-    const work w = carve(solver, &(ptie_slicer){.base = scratch});
-    PTIE_TRY(ptie_tie_derivative(w.image, &solver->weights, planes));
-    ptie_tie_invert(solver, w.image, w.spectrum);
-    memcpy(phase_rad, w.image, ptie_solver_pixels(solver) * sizeof *phase_rad);
+/* measured: may be w.spectrum. */
+static ptie_status solve_direct(const ptie_solver *solver, float *phase_rad, float *measured, const work *w,
+                                const float *const *planes) {
+    PTIE_TRY(ptie_tie_derivative(w->image, &solver->weights, planes));
+    ptie_fft_forward(solver->fft, measured, w->image);
+    ptie_fft_filter_to(solver->fft, w->spectrum, measured, solver->inverse);
+    ptie_fft_inverse(solver->fft, w->image, w->spectrum);
+    memcpy(phase_rad, w->image, ptie_solver_pixels(solver) * sizeof *phase_rad);
     if (solver->mask) ptie_tie_level(solver, phase_rad);
-    if (report) *report = (ptie_solver_report){.iterations = 1};
     return PTIE_OK;
+}
+
+ptie_status ptie_tie_solve_direct(const ptie_solver *solver, float *phase_rad, float *measured,
+                                  const float *const *planes, void *scratch) {
+    assert(solver->params.method == PTIE_SOLVE_DIRECT && (uintptr_t)scratch % PTIE_ALIGNMENT == 0);
+    const work w = carve(solver, &(ptie_slicer){.base = scratch});
+    return solve_direct(solver, phase_rad, measured, &w, planes);
 }
 
 ptie_status ptie_tie_solve(const ptie_solver *solver, float *phase_rad, const float *const *planes,
                            void *scratch, ptie_solver_report *report) {
     assert((uintptr_t)scratch % PTIE_ALIGNMENT == 0);
-    if (solver->params.method == PTIE_SOLVE_DIRECT)
-        return solve_direct(solver, phase_rad, planes, scratch, report);
-    return ptie_tie_iterate(solver, phase_rad, planes, scratch, report);
+    if (solver->params.method != PTIE_SOLVE_DIRECT)
+        return ptie_tie_iterate(solver, phase_rad, planes, scratch, report);
+    const work w = carve(solver, &(ptie_slicer){.base = scratch});
+    if (report) *report = (ptie_solver_report){.iterations = 1};
+    return solve_direct(solver, phase_rad, w.spectrum, &w, planes);
 }
 
 /* White noise of variance v per pixel of dI/dz leaves v times the filter's mean power (M8). */

@@ -12,6 +12,10 @@ int32_t ptie_tie_planes(const ptie_solver *solver); /* of a frame */
 size_t ptie_tie_scratch(const ptie_solver *solver);
 ptie_status ptie_tie_solve(const ptie_solver *solver, float *phase_rad, const float *const *planes,
                            void *scratch, ptie_solver_report *report);
+/* Of PTIE_SOLVE_DIRECT.  measured (out): the spectrum of (dI/dz) / I, the same ptie_tie_solve inverts, in a buffer of
+   the boundary's transform (fft/fft.h). */
+ptie_status ptie_tie_solve_direct(const ptie_solver *solver, float *phase_rad, float *measured,
+                                  const float *const *planes, void *scratch);
 /* Of a method other than PTIE_SOLVE_DIRECT, docs/math.md (Q11).  residual (out): per map, what diffraction by it leaves
    of the planes' dI/dz, rms about the means, relative to dI/dz itself.  scratch: as ptie_tie_solve. */
 ptie_status ptie_tie_reproject(const ptie_solver *solver, double *residual, const float *const *maps,
