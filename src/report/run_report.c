@@ -58,8 +58,10 @@ static void add_facts(report *r) {
                v->pixel_m > 0 ? ptie_print_rounded(pixel, v->pixel_m, PTIE_LENGTH) : "");
     add_fact(r, "phase", text);
     if (v->seconds && v->finished > 1) {
-        ptie_print(text, sizeof text, "%.6g s in steps of %.4g s", v->time[v->finished - 1] - v->time[0],
-                   v->time[1] - v->time[0]);
+        char whole[PTIE_QUANTITY_BYTES], step[PTIE_QUANTITY_BYTES];
+        ptie_print(text, sizeof text, "%s in steps of %s",
+                   ptie_print_rounded(whole, v->time[v->finished - 1] - v->time[0], PTIE_TIME),
+                   ptie_print_rounded(step, v->time[1] - v->time[0], PTIE_TIME));
         add_fact(r, "duration", text);
     }
     add_attribute(r, "model", "model");
@@ -117,7 +119,8 @@ static ptie_status add_contact_sheet(report *r) {
         const int32_t row = i / columns, column = i % columns;
         const int64_t frame = frame_of_column(r, column, columns);
         PTIE_TRY(ptie_run_view_map(&r->view, maps[row], frame, map_at(r, i)));
-        ptie_print(titles[column], sizeof titles[0], r->view.seconds ? "t = %.4g s" : "frame %.0f", r->view.time[frame]);
+        ptie_print(titles[column], sizeof titles[0], r->view.seconds ? "t = %.4g ms" : "frame %.0f",
+                   r->view.time[frame] * (r->view.seconds ? 1e3 : 1));
         panels[i] = panel_of(r, map_at(r, i), row == 0 ? titles[column] : NULL);
     }
     for (int32_t row = 0; row < rows; row++) share_colours(panels + row * columns, columns, r->view.pixels);
@@ -192,7 +195,7 @@ static ptie_status add_table(report *r) {
                      "</table>\n<p>Mean ± standard deviation over frames. MGM: mean gradient in the jet. SBR: mean of the "
                      "jet over that of the background; close to 0 / 0 where the background is flat. BNS: standard "
                      "deviation of the background. CNR: contrast over noise. Residual: the map sent back through the "
-                     "forward model against the planes; 0 keeps all noise, 1 is an empty map.</p>\n");
+                     "forward model against the planes; 0 keeps all noise, 1 is an empty map, more contradicts them.</p>\n");
     ptie_free(values);
     return PTIE_OK;
 }
