@@ -33,11 +33,20 @@ PTIE_INLINE void add_pixel(moments *m, size_t lane, double value, bool in) {
     m->second.value[lane] += counted * counted;
 }
 
+/* Whether any of LANES labels is the region: most blocks are all in it or have nothing of it. */
+PTIE_INLINE bool has_any(const uint8_t *labels, uint8_t region) {
+    uint8_t any = 0;
+    for (size_t l = 0; l < LANES; l++) any |= labels[l] == region;
+    return any;
+}
+
 PTIE_CLONES static void add_region(moments *restrict m, const float *restrict map, const uint8_t *restrict labels,
                                    uint8_t region, size_t pixels, double level) {
     const size_t whole = pixels / LANES * LANES;
-    for (size_t i = 0; i < whole; i += LANES)
+    for (size_t i = 0; i < whole; i += LANES) {
+        if (!has_any(labels + i, region)) continue;
         for (size_t l = 0; l < LANES; l++) add_pixel(m, l, (double)map[i + l] - level, labels[i + l] == region);
+    }
     for (size_t i = whole; i < pixels; i++) add_pixel(m, i - whole, (double)map[i] - level, labels[i] == region);
 }
 
@@ -68,11 +77,13 @@ PTIE_CLONES static void add_gradients(sums *restrict sum, const stencil *restric
                                       ptrdiff_t width) {
     if (labels[0] == PTIE_JET) sum->value[0] += gradient(s, 0, 0, width > 1);
     ptrdiff_t x = 1;
-    for (; x + LANES < width; x += LANES)
+    for (; x + LANES < width; x += LANES) {
+        if (!has_any(labels + x, PTIE_JET)) continue;
         for (ptrdiff_t l = 0; l < LANES; l++) {
             const double steepness = gradient(s, x + l - 1, x + l, x + l + 1);
             sum->value[l] += labels[x + l] == PTIE_JET ? steepness : 0;
         }
+    }
     for (; x < width; x++)
         if (labels[x] == PTIE_JET) sum->value[0] += gradient(s, x - 1, x, x + (x + 1 < width));
 }
