@@ -105,6 +105,7 @@ static ptie_status open_images(ptie_source *source, const ptie_run_params *param
     source->shape.frames = info->frames;
     source->shape.frame_rate_hz = info->frame_rate_hz;
     source->shape.white_level = info->white_level;
+    source->shape.path = source->path[0];
     return PTIE_OK;
 }
 
@@ -160,7 +161,7 @@ static ptie_status check_like(const ptie_source *source, const ptie_source_shape
     if (shape->width_px == like->width_px && shape->height_px == like->height_px) return PTIE_OK;
     return PTIE_FAIL(
         PTIE_ESIZE,
-        "%s: frame size differs from the recording's (expected %d x %d px, found %d x %d)", path,
+        "%s: frame size differs from %s (expected %d x %d px, found %d x %d)", path, like->path,
         like->width_px, like->height_px, shape->width_px, shape->height_px);
 }
 

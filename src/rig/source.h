@@ -16,6 +16,7 @@ typedef struct ptie_source_shape {
                                     ptie_rig_planes without the reference), else 1 */
     int64_t frames;
     double frame_rate_hz, white_level; /* what the recording says, 0: nothing */
+    const char *path;                  /* of the first image; the source owns it */
 } ptie_source_shape;
 
 /* Opens all recordings of a run's planes and checks that they fit together.  Errors name both files

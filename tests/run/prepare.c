@@ -267,7 +267,7 @@ static void what_does_not_fit_is_refused(void **state) {
     write_frames("small.npy", small, 1, 4, 4);
     snprintf(rig.dark, sizeof rig.dark, "%s", support_temporary("small.npy"));
     assert_fails(prepare(&rig, PTIE_STEP_MASK), PTIE_ESIZE,
-                 "small.npy: frame size differs from the recording's");
+                 "small.npy: frame size differs from ");
     rig.dark[0] = 0;
     snprintf(rig.mask, sizeof rig.mask, "%s", support_temporary("small.npy"));
     assert_fails(prepare(&rig, PTIE_STEP_MASK), PTIE_ESIZE,
