@@ -188,7 +188,9 @@ static ptie_status read_line(reading *r, char **section, char *line) {
     char *separator = strpbrk(line, "=:");
     if (!separator) return not_a_line(r);
     *separator = 0;
-    return set_key(r, *section, trimmed(line), trimmed(separator + 1));
+    char *value = trimmed(separator + 1);
+    if (*value == ';') *value = 0; /* "key =; a comment" */
+    return set_key(r, *section, trimmed(line), value);
 }
 
 /* Up to the first bad line, whose number is returned, or 0.  text is cut to pieces. */
