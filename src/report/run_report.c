@@ -191,11 +191,12 @@ static ptie_status add_table(report *r) {
             ptie_text_append(&r->html.text, "<tr><th>%s</th><td class=\"n\">%s</td><td class=\"n\">%s</td></tr>\n",
                              metrics[i].label, phase, denoised);
     }
-    ptie_text_append(&r->html.text, 
+    ptie_text_append(&r->html.text,
                      "</table>\n<p>Mean ± standard deviation over frames. MGM: mean gradient in the jet. SBR: mean of the "
                      "jet over that of the background; close to 0 / 0 where the background is flat. BNS: standard "
                      "deviation of the background. CNR: contrast over noise. Residual: the map sent back through the "
-                     "forward model against the planes; 0 keeps all noise, 1 is an empty map, more contradicts them.</p>\n");
+                     "forward model against the planes; 0 keeps all noise, 1 is an empty map, more contradicts "
+                     "them.</p>\n");
     ptie_free(values);
     return PTIE_OK;
 }

@@ -24,8 +24,10 @@ typedef struct denoising {
 /* A camera's counts are no phase, and would make a map that looks like one. */
 static ptie_status check_unit(const ptie_recording_info *info, const char *path) {
     if (info->bit_depth == 0 || strcmp(info->unit, "rad") == 0) return PTIE_OK;
-    return PTIE_FAIL(PTIE_EFORMAT, "%s: intensity of a camera (expected phase in rad, as 'ptie run' makes it, found %d bits)",
-                     path, info->bit_depth);
+    return PTIE_FAIL(
+        PTIE_EFORMAT,
+        "%s: intensity of a camera (expected phase in rad, as 'ptie run' makes it, found %d bits)", path,
+        info->bit_depth);
 }
 
 static ptie_status prepare(denoising *d, const ptie_engine *engine) {
