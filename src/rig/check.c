@@ -13,7 +13,6 @@
 #include "rig/sampling.h"
 #include "tie/solver.h"
 
-#define LINEAR_CHI 0.55 /* sin chi / chi = 0.95 */
 
 typedef struct check {
     const ptie_rig *rig;
@@ -184,15 +183,11 @@ static ptie_status check_registration(check *c) {
 static void check_linearity(check *c) {
     const ptie_rig *rig = c->rig;
     char nyquist[PTIE_QUANTITY_BYTES], finest[PTIE_QUANTITY_BYTES];
-    const double period_m = 2 * ptie_rig_pixel_m(rig);
-    double largest_m = 0;
-    for (int i = 0; i < PTIE_ROLES; i++)
-        if (rig->plane[i].used) largest_m = fmax(largest_m, fabs(rig->plane[i].defocus_m));
-    const double chi = ptie_chi(rig->wavelength_m, largest_m, period_m);
-    const double linear_m = period_m * sqrt(chi / LINEAR_CHI);
+    const double period_m = 2 * ptie_rig_pixel_m(rig), linear_m = ptie_rig_linear_period_m(rig);
+    const double chi = PTIE_LINEAR_CHI * pow(linear_m / period_m, 2);
     ptie_print_rounded(nyquist, period_m, PTIE_LENGTH);
     ptie_print_rounded(finest, linear_m, PTIE_LENGTH);
-    add(c, "linear TIE", judge(chi, LINEAR_CHI, (double)INFINITY), chi,
+    add(c, "linear TIE", judge(chi, PTIE_LINEAR_CHI, (double)INFINITY), chi,
         "chi = %.3g at Nyquist (%s); periods below %s come out more than 5 %% too weak", chi,
         nyquist, finest);
 }

@@ -68,6 +68,13 @@ double ptie_rig_pixel_m(const ptie_rig *rig) {
     return rig->pixel_m * rig->binning * (rig->layout == PTIE_LAYOUT_MOSAIC ? 2 : 1);
 }
 
+double ptie_rig_linear_period_m(const ptie_rig *rig) {
+    double farthest_m = 0;
+    for (int i = 0; i < PTIE_ROLES; i++)
+        if (rig->plane[i].used) farthest_m = fmax(farthest_m, fabs(rig->plane[i].defocus_m));
+    return sqrt(ptie_chi(rig->wavelength_m, farthest_m, 1) / PTIE_LINEAR_CHI); /* chi falls as 1 / period^2 */
+}
+
 ptie_solver_params ptie_rig_solver(const ptie_rig *rig, int32_t width_px, int32_t height_px) {
     ptie_role role[PTIE_ROLES];
     ptie_solver_params p = {

@@ -34,6 +34,11 @@ ptie_status ptie_rig_check_planes(const ptie_rig *rig, const char *where);
 /* Of the planes and the phase: after de-mosaicking and binning. */
 double ptie_rig_pixel_m(const ptie_rig *rig);
 
+/* From this chi on, linear TIE is more than 5 % too weak: sin(chi) = 0.95 chi. */
+#define PTIE_LINEAR_CHI 0.55
+/* Period with that chi in the plane farthest from focus, docs/math.md (M7b): finer structures come out too weak. */
+double ptie_rig_linear_period_m(const ptie_rig *rig);
+
 /* How planes of this size are solved; without a cut-off where that is still to be chosen. */
 ptie_solver_params ptie_rig_solver(const ptie_rig *rig, int32_t width_px, int32_t height_px);
 

@@ -5,11 +5,11 @@
 #include <stdarg.h>
 
 #include "base/text.h"
+#include "rig/planes.h"
 
 /* From here on something is worth a word. */
 static const double LARGEST_IMBALANCE = 0.004; /* Zhang et al. 2020 (US-TIE) ask for 1/255 */
 static const double LARGEST_FLICKER = 0.02;    /* rms of the brightness */
-static const double LARGEST_CHI = 0.55;        /* sin(chi) is 5 % below chi */
 static const double COARSEST_PX = 16;          /* a period that linear TIE should pass */
 static const double LARGEST_DRIFT = 0.5;       /* of the background, in units of BNS */
 static const double LARGEST_EXCESS = 3;        /* BNS over what the planes' noise explains */
@@ -24,12 +24,6 @@ static void warn(ptie_run_summary *s, const char *format, ...) {
     va_end(arguments);
 }
 
-/* Period whose chi = (2 pi / period)^2 |z| / (2 k) is the largest that linear TIE bears, docs/math.md (M3). */
-static double finest_period_m(const ptie_rig *rig) {
-    const double pi = acos(-1);
-    return sqrt(pi * rig->wavelength_m * fabs(rig->plane[PTIE_PLUS].defocus_m) / LARGEST_CHI);
-}
-
 static void warn_of_files(ptie_run_summary *s, const ptie_source *source) {
     for (int32_t i = 0; i < ptie_source_get_shape(source).images; i++)
         if (ptie_source_warning(source, i)[0])
@@ -39,7 +33,7 @@ static void warn_of_files(ptie_run_summary *s, const ptie_source *source) {
 static void warn_of_planes(ptie_run_summary *s, const ptie_rig *rig, const ptie_running *of_frame) {
     const ptie_stat imbalance = ptie_running_stat(&of_frame[PTIE_IMBALANCE]);
     const ptie_stat brightness = ptie_running_stat(&of_frame[PTIE_BRIGHTNESS]);
-    const double saturated = of_frame[PTIE_SATURATED].largest, period_m = finest_period_m(rig);
+    const double saturated = of_frame[PTIE_SATURATED].largest, period_m = ptie_rig_linear_period_m(rig);
     if (saturated > 0)
         warn(s, "saturation: up to %.2g %% of a frame's pixels reach %g counts", 100 * saturated,
              rig->saturation_counts);
